@@ -1,0 +1,122 @@
+//! Files as text, and places in them.
+
+use std::sync::Arc;
+
+/// A file of a [`SourceMap`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct SourceId(pub u32);
+
+/// A half-open byte range `start..end` of one source.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct Span {
+    /// The file.
+    pub source: SourceId,
+    /// First byte.
+    pub start: u32,
+    /// One past the last byte.
+    pub end: u32,
+}
+
+impl Span {
+    /// The bytes `start..end` of `source`.
+    pub fn new(source: SourceId, start: usize, end: usize) -> Self {
+        Self { source, start: start as u32, end: end as u32 }
+    }
+
+    /// The smallest span that covers both; both must be of one source.
+    #[must_use]
+    pub fn to(self, other: Span) -> Span {
+        Span { source: self.source, start: self.start.min(other.start), end: self.end.max(other.end) }
+    }
+
+    /// The empty span at the end of this one.
+    #[must_use]
+    pub fn after(self) -> Span {
+        Span { start: self.end, ..self }
+    }
+}
+
+/// A place as a person counts: from 1, columns in Unicode scalar values.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
+pub struct LineColumn {
+    /// Line, from 1.
+    pub line: usize,
+    /// Column, from 1, in Unicode scalar values.
+    pub column: usize,
+}
+
+#[derive(Debug, Clone)]
+struct Source {
+    name: String,
+    text: Arc<str>,
+    line_starts: Vec<u32>,
+}
+
+/// The files of a session, by [`SourceId`].
+#[derive(Debug, Clone, Default)]
+pub struct SourceMap {
+    sources: Vec<Source>,
+}
+
+impl SourceMap {
+    /// Adds a file under the name that diagnostics show. Sources are at most 4 GiB − 1; the loader refuses larger ones.
+    pub fn add(&mut self, name: impl Into<String>, text: impl Into<Arc<str>>) -> SourceId {
+        let text = text.into();
+        let line_starts =
+            std::iter::once(0).chain(text.bytes().zip(1u32..).filter(|(b, _)| *b == b'\n').map(|(_, i)| i));
+        self.sources.push(Source { name: name.into(), line_starts: line_starts.collect(), text });
+        SourceId(self.sources.len() as u32 - 1)
+    }
+
+    /// The name a file was added under.
+    pub fn name(&self, id: SourceId) -> &str {
+        &self.sources[id.0 as usize].name
+    }
+
+    /// A file's text.
+    pub fn text(&self, id: SourceId) -> &Arc<str> {
+        &self.sources[id.0 as usize].text
+    }
+
+    /// The text under a span.
+    pub fn snippet(&self, span: Span) -> &str {
+        &self.sources[span.source.0 as usize].text[span.start as usize..span.end as usize]
+    }
+
+    /// Line and column of a byte offset (clamped to the text, rounded down to a character's start).
+    pub fn line_column(&self, id: SourceId, offset: u32) -> LineColumn {
+        let source = &self.sources[id.0 as usize];
+        let mut offset = (offset as usize).min(source.text.len());
+        while !source.text.is_char_boundary(offset) {
+            offset -= 1;
+        }
+        let line = source.line_starts.partition_point(|&start| start as usize <= offset);
+        let start = source.line_starts[line - 1] as usize;
+        LineColumn { line, column: source.text[start..offset].chars().count() + 1 }
+    }
+
+    /// The ids of all files, in the order they were added.
+    pub fn ids(&self) -> impl Iterator<Item = SourceId> + use<> {
+        (0..self.sources.len() as u32).map(SourceId)
+    }
+
+    /// "file:line:column" of a span's start.
+    pub fn place(&self, span: Span) -> String {
+        let at = self.line_column(span.source, span.start);
+        format!("{}:{}:{}", self.name(span.source), at.line, at.column)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn columns_count_characters_and_lines_count_from_one() {
+        let mut map = SourceMap::default();
+        let id = map.add("a", "é\nxy\n");
+        assert_eq!(map.line_column(id, 2), LineColumn { line: 1, column: 2 });
+        assert_eq!(map.line_column(id, 4), LineColumn { line: 2, column: 2 });
+        assert_eq!(map.line_column(id, 99), LineColumn { line: 3, column: 1 });
+    }
+}

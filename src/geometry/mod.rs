@@ -1,0 +1,3 @@
+//! Shapes as numbers, without spans: meshes now; curves, patches and skeletons to come.
+
+pub mod mesh;

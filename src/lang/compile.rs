@@ -1,0 +1,1 @@
+//! Functions of the scene to tapes.

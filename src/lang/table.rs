@@ -1,0 +1,236 @@
+//! The shape of the two tables that drive the language: kinds of block with their properties, and builtin functions.
+//! The evaluator, the checks, the hints, the reference page and completion are all derived from them.
+
+use super::value::{Given, Value};
+use crate::diag::{Diagnostic, Span};
+use crate::scene::assets::Loader;
+use crate::scene::{Node, SampleInput, SampledFunction};
+use crate::syntax::ast::Name;
+use std::path::PathBuf;
+use std::sync::Arc;
+
+/// Proof that an error was reported; whoever gets it stays silent.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Reported;
+
+/// A value, or an error that was already reported.
+pub type Outcome<T = Value> = Result<T, Reported>;
+
+/// What builders and builtins may ask of the evaluator.
+pub trait Context {
+    /// Reports a diagnostic, with the calls that led here.
+    fn report(&mut self, diagnostic: Diagnostic);
+    /// Reports an error and gives the token that says so.
+    fn fail(&mut self, diagnostic: Diagnostic) -> Reported {
+        self.report(diagnostic);
+        Reported
+    }
+    /// Calls a function value.
+    fn call(&mut self, function: &Value, arguments: &[Value], at: Span) -> Outcome;
+    /// How many parameters a function value has, and how many of them have no default; none if it is no function.
+    fn arity(&self, function: &Value) -> Option<(usize, usize)>;
+    /// A path as written at a place, joined to the folder of the file it stands in.
+    fn path(&self, written: &str, at: Span) -> PathBuf;
+    /// Reads files.
+    fn loader(&self) -> &dyn Loader;
+    /// What `print` says.
+    fn print(&mut self, text: String);
+    /// Compiles a function value to run while rendering; reports why it cannot be.
+    /// `outputs` are the counts that the place allows: `&[1, 3]` for a colour or a number.
+    fn sampled(
+        &mut self,
+        function: &Value,
+        input: SampleInput,
+        outputs: &[usize],
+        at: Span,
+    ) -> Outcome<Arc<SampledFunction>>;
+    /// Counts `elements` list elements (or bytes / 32) that are about to be made against the guards.
+    fn reserve(&mut self, elements: usize, at: Span) -> Outcome<()>;
+    /// `time` and `frame` of this evaluation.
+    fn time(&self) -> (f64, f64);
+}
+
+/// A kind of block.
+pub struct Kind {
+    /// Its word.
+    pub name: &'static str,
+    /// What it is, in one line.
+    pub doc: &'static str,
+    /// A short scene or item that shows it; checked by a test.
+    pub example: &'static str,
+    /// What becomes of its value.
+    pub role: Role,
+    /// Its own properties. Those that every object takes are added by [`Kind::properties`] where `role` is an object's.
+    pub own: &'static [Property],
+    /// Whether objects and lights may be placed inside it.
+    pub children: bool,
+    /// Whether it takes properties of any name (a pose's are its joints).
+    pub open: bool,
+    /// How its value is made; none is "not built yet".
+    pub build: Option<Build>,
+}
+
+/// Makes a block's value from what stood between its braces, all checked against the table.
+pub type Build = fn(&mut dyn Context, Block) -> Outcome;
+
+/// What becomes of a block's value.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Role {
+    /// Placed where it stands, and takes transforms, material, name and hide.
+    Object,
+    /// Placed where it stands.
+    Light,
+    /// Only named, or given to the property of the same name.
+    Value,
+    /// Once per scene: camera, render.
+    Setting,
+    /// A part of another block alone: joint, tip.
+    Part,
+}
+
+/// A property of a block.
+pub struct Property {
+    /// Its word.
+    pub name: &'static str,
+    /// What it takes: alternatives, each a row of types. `&[&[]]` is a flag.
+    pub takes: &'static [&'static [Type]],
+    /// Takes any number of values of the one type of `takes`, or one list of them.
+    pub many: bool,
+    /// The block cannot be without it.
+    pub required: bool,
+    /// May be given again and again (transforms, `reach`).
+    pub repeats: bool,
+    /// The default as it would be written, or "" for none.
+    pub default: &'static str,
+    /// What it is, in one line, with its unit.
+    pub doc: &'static str,
+}
+
+/// What a property or parameter takes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Type {
+    /// A finite number in closed bounds.
+    Number {
+        /// Least.
+        min: f64,
+        /// Most.
+        max: f64,
+    },
+    /// A finite number above 0.
+    Positive,
+    /// A whole number of at least `min`.
+    Integer {
+        /// Least.
+        min: i64,
+    },
+    /// `true`, `false`, `on`, `off`.
+    Bool,
+    /// Text.
+    Text,
+    /// A 2-vector.
+    Vector2,
+    /// A 3-vector.
+    Vector3,
+    /// A 4-vector.
+    Vector4,
+    /// A 3-vector that is not 0.
+    Direction,
+    /// Linear RGB or a grey.
+    Colour,
+    /// A colour, a number, a pattern, or a function of the point, of (u, v).
+    Texture,
+    /// One of these words, written bare.
+    Word(&'static [&'static str]),
+    /// A name of the author's own, written bare: a joint.
+    Label,
+    /// An object.
+    Object,
+    /// A material.
+    Material,
+    /// A transform.
+    Transform,
+    /// A function.
+    Function,
+    /// A list of anything.
+    List,
+    /// Anything.
+    Any,
+    /// A value of a part of the language that is not built yet.
+    Unbuilt,
+}
+
+impl Type {
+    /// Any finite number.
+    pub const NUMBER: Type = Type::Number { min: f64::MIN, max: f64::MAX };
+    /// A finite number of at least 0.
+    pub const NON_NEGATIVE: Type = Type::Number { min: 0.0, max: f64::MAX };
+}
+
+/// A block's content, given to its [`Build`].
+pub struct Block {
+    /// Its kind.
+    pub kind: &'static Kind,
+    /// From the kind to the closing brace.
+    pub span: Span,
+    /// The kind's word.
+    pub kind_span: Span,
+    /// Its label.
+    pub label: Option<(Name, Span)>,
+    /// Its properties in the order written, each checked against the table; bare words are [`Value::Word`].
+    pub given: Vec<Given>,
+    /// Objects and lights that its items placed.
+    pub children: Vec<Node>,
+}
+
+/// A builtin function.
+pub struct Builtin {
+    /// Its name.
+    pub name: &'static str,
+    /// Its parameters.
+    pub parameters: &'static [Parameter],
+    /// Takes any number of further arguments of the last parameter's type.
+    pub variadic: bool,
+    /// What it gives, in one line.
+    pub doc: &'static str,
+    /// An expression that shows it and what it gives: ("sqrt(2)^2", "2.0000000000000004"); checked by a test.
+    pub example: (&'static str, &'static str),
+    /// How.
+    pub body: BuiltinBody,
+}
+
+impl std::fmt::Debug for Builtin {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "builtin {}", self.name)
+    }
+}
+
+/// A parameter of a builtin.
+pub struct Parameter {
+    /// Its name, for named arguments.
+    pub name: &'static str,
+    /// What it takes, in words: "number", "vector", "list", "number or vector".
+    pub takes: &'static str,
+    /// Its default as written; none must be given.
+    pub default: Option<&'static str>,
+}
+
+/// How a builtin computes. Numeric ones are plain functions, so that loops and tapes call them without ceremony; on vectors
+/// they work component by component. A result that is not finite from finite arguments is reported by the caller.
+pub enum BuiltinBody {
+    /// A number from a number.
+    Number1(fn(f64) -> f64),
+    /// A number from two.
+    Number2(fn(f64, f64) -> f64),
+    /// Anything else; arguments are in the order of the parameters, with defaults filled in and their places beside them.
+    General(fn(&mut dyn Context, &Arguments<'_>) -> Outcome),
+}
+
+/// The arguments of a call of a builtin.
+pub struct Arguments<'a> {
+    /// The values.
+    pub values: &'a [Value],
+    /// Their places, one each (the call's for a default).
+    pub spans: &'a [Span],
+    /// The call.
+    pub span: Span,
+}

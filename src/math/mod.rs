@@ -1,0 +1,14 @@
+//! Numbers: boxes, affine maps, error bounds, polynomial roots, functions as tapes. Knows nothing of scenes.
+//!
+//! f64 throughout. The functions of [`elementary`] are the only transcendental ones the project calls, so that a scene
+//! gives the same bits on every machine.
+
+pub mod affine;
+pub mod bounds;
+pub mod elementary;
+pub mod error;
+pub mod field;
+pub mod solve;
+
+pub use affine::Affine;
+pub use bounds::Aabb;

@@ -1,0 +1,1 @@
+//! Real roots of polynomials; small closed-form solvers.

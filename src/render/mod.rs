@@ -1,0 +1,18 @@
+//! Pictures: rays from a camera, radiance by a tracer, sums on a film, files on disk.
+
+use crate::scene::Rgb;
+use crate::world::{Ray, World};
+
+/// A way to find the radiance that arrives along a ray. Made by its constructor from a world, so that what it must prepare
+/// (a photon map, a cache) cannot be missing.
+pub trait Tracer: Sync {
+    /// Radiance along a camera ray, linear RGB. Called once per camera sample.
+    fn radiance(&self, world: &World, ray: Ray, sampler: &mut sampler::Sampler) -> Rgb;
+}
+
+pub mod camera;
+pub mod film;
+pub mod output;
+pub mod sampler;
+pub mod tiles;
+pub mod whitted;

@@ -1,0 +1,3 @@
+//! (sampler)
+/// The random numbers of one camera sample.
+pub struct Sampler {}

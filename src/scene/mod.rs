@@ -1,0 +1,32 @@
+//! A scene once evaluated: plain data with spans. Nothing is loaded, tessellated or flattened here; the world does that
+//! for what a picture needs. Colours are linear RGB.
+
+pub mod assets;
+pub mod camera;
+pub mod light;
+pub mod material;
+pub mod object;
+pub mod settings;
+
+pub use camera::{Camera, Projection};
+pub use light::{Light, LightSource, Sky};
+pub use material::{
+    Filter, Fresnel, ImagePattern, Layers, Lobe, Material, Pattern, PatternKind, SampleInput,
+    SampledFunction, Texture, Wrap,
+};
+pub use object::{Cone, Disc, Hide, MeshSource, Node, Object, Rect, Shape, Torus, Triangle};
+pub use settings::{Accelerator, RenderSettings, ToneMap, TracerKind};
+
+/// A colour or any triple of linear RGB: red, green, blue.
+pub type Rgb = glam::DVec3;
+
+/// Everything a file says, in the order it says it.
+#[derive(Clone, Debug, Default)]
+pub struct Scene {
+    /// Objects and lights at top level.
+    pub nodes: Vec<Node>,
+    /// Cameras; the first is used unless another is named.
+    pub cameras: Vec<Camera>,
+    /// What the `render` block says.
+    pub render: RenderSettings,
+}

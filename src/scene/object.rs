@@ -1,0 +1,165 @@
+//! Objects: a shape, where it stands, what it is made of, and where in the text it was written.
+
+use super::{Light, Material};
+use crate::diag::Span;
+use crate::geometry::mesh::Mesh;
+use crate::math::Affine;
+use glam::{DVec2, DVec3};
+use std::path::PathBuf;
+use std::sync::Arc;
+
+/// What stands in a scene or a group.
+#[derive(Clone, Debug)]
+pub enum Node {
+    /// An object. Shared shapes (`Arc`s inside [`Shape`]) are instances of one another.
+    Object(Arc<Object>),
+    /// A light.
+    Light(Arc<Light>),
+}
+
+/// A placed or placeable object. Small, because a scene may hold millions.
+#[derive(Clone, Debug)]
+pub struct Object {
+    /// What it is, in its own space.
+    pub shape: Shape,
+    /// Parent from local; none is the identity.
+    pub transform: Option<Box<Affine>>,
+    /// Its material; none takes its group's, and white plaster (diffuse 0.8) in the end.
+    pub material: Option<Arc<Material>>,
+    /// `name "…"`.
+    pub name: Option<Box<str>>,
+    /// Where it was written: the block, or the `with` that made this copy.
+    pub span: Span,
+    /// From whom it is hidden.
+    pub hide: Hide,
+}
+
+impl Object {
+    /// An object of a shape with nothing else said.
+    pub fn new(shape: Shape, span: Span) -> Self {
+        Object { shape, transform: None, material: None, name: None, span, hide: Hide::default() }
+    }
+
+    /// Applies a transform after those that it already has.
+    pub fn transform_by(&mut self, next: &Affine) {
+        let before = self.transform.as_deref().copied().unwrap_or_default();
+        self.transform = Some(Box::new(before.then(next)));
+    }
+}
+
+/// The rays that do not see an object.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Hide {
+    /// Camera rays pass through.
+    pub camera: bool,
+    /// It casts no shadow.
+    pub shadow: bool,
+    /// Reflected and refracted rays pass through.
+    pub reflection: bool,
+}
+
+/// The geometry of an object in its own space. Lengths in scene units; axes and normals are unit vectors.
+#[derive(Clone, Debug)]
+pub enum Shape {
+    /// |p − center| = radius > 0. u is the longitude from −z… see the reference; v the latitude from the south pole.
+    Sphere {
+        /// Centre.
+        center: DVec3,
+        /// Radius, positive.
+        radius: f64,
+    },
+    /// Infinite plane n·p = offset, solid on the side its normal leaves.
+    Plane {
+        /// Unit normal.
+        normal: DVec3,
+        /// n·p on the plane.
+        offset: f64,
+    },
+    /// Flat disc.
+    Disc(Box<Disc>),
+    /// Parallelogram center ± a ± b; normal a × b.
+    Rect(Box<Rect>),
+    /// Axis-aligned box, min < max.
+    Box(Box<(DVec3, DVec3)>),
+    /// Capped cylinder or cone.
+    Cone(Box<Cone>),
+    /// Torus.
+    Torus(Box<Torus>),
+    /// A single triangle.
+    Triangle(Box<Triangle>),
+    /// A mesh, shared between its placements.
+    Mesh(Arc<MeshSource>),
+    /// Children, shared between placements of the group.
+    Group(Arc<[Node]>),
+}
+
+/// A flat disc.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Disc {
+    /// Centre.
+    pub center: DVec3,
+    /// Unit normal.
+    pub normal: DVec3,
+    /// Radius, positive.
+    pub radius: f64,
+}
+
+/// A parallelogram.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rect {
+    /// Centre.
+    pub center: DVec3,
+    /// First half-edge; u runs along it.
+    pub a: DVec3,
+    /// Second half-edge; v runs along it.
+    pub b: DVec3,
+}
+
+/// A capped frustum: `from`, `to` on the axis and a radius at each (one may be 0; equal radii make a cylinder).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Cone {
+    /// Centre of the first cap.
+    pub from: DVec3,
+    /// Centre of the second cap.
+    pub to: DVec3,
+    /// Radii at `from` and `to`, ≥ 0, not both 0.
+    pub radii: [f64; 2],
+}
+
+/// A torus.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Torus {
+    /// Centre.
+    pub center: DVec3,
+    /// Unit axis of symmetry.
+    pub axis: DVec3,
+    /// Radius of the ring's centre line, and of the tube; both positive. A spindle (minor > major) is allowed.
+    pub radii: [f64; 2],
+}
+
+/// A triangle with optional corner data.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Triangle {
+    /// Corners, counterclockwise seen from outside.
+    pub vertices: [DVec3; 3],
+    /// Unit shading normals at the corners.
+    pub normals: Option<[DVec3; 3]>,
+    /// Texture coordinates at the corners.
+    pub uvs: Option<[DVec2; 3]>,
+}
+
+/// Where a mesh comes from.
+#[derive(Clone, Debug)]
+pub enum MeshSource {
+    /// A file, read when a picture needs it.
+    File {
+        /// Path, already joined to the folder of the file that names it.
+        path: PathBuf,
+        /// `smooth on` or `off`; none follows the file (its normals and smoothing groups).
+        smooth: Option<bool>,
+        /// The `file` property's value.
+        span: Span,
+    },
+    /// Written in the scene.
+    Inline(Mesh),
+}

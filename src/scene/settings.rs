@@ -1,0 +1,70 @@
+//! What a `render` block says; every member is optional, so that the command line can override each and defaults stand in
+//! one place.
+
+use super::Rgb;
+use crate::diag::Span;
+
+/// The `render` block.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct RenderSettings {
+    /// Width and height in pixels.
+    pub size: Option<[u32; 2]>,
+    /// The tracer.
+    pub tracer: Option<TracerKind>,
+    /// Samples per pixel.
+    pub samples: Option<u32>,
+    /// Most segments from the camera.
+    pub depth: Option<u32>,
+    /// Of every random number.
+    pub seed: Option<u64>,
+    /// The tree.
+    pub accelerator: Option<Accelerator>,
+    /// In stops.
+    pub exposure: Option<f64>,
+    /// On 8-bit output only.
+    pub tonemap: Option<ToneMap>,
+    /// Seen where nothing else is; lights nothing.
+    pub background: Option<Rgb>,
+    /// How many frames an animation has.
+    pub frames: Option<u32>,
+    /// Frames per second.
+    pub fps: Option<f64>,
+    /// Where it was written.
+    pub span: Option<Span>,
+}
+
+/// The tracers by name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[allow(missing_docs, reason = "the names are the words of the language")]
+pub enum TracerKind {
+    Raycast,
+    Whitted,
+    MonteCarlo,
+    Path,
+    Irradiance,
+    Photon,
+}
+
+/// The accelerators by name.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Accelerator {
+    /// Bounding-volume hierarchy.
+    #[default]
+    Bvh,
+    /// kd-tree.
+    KdTree,
+    /// Every shape against every ray.
+    None,
+}
+
+/// From linear radiance to 0 … 1 before sRGB.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum ToneMap {
+    /// Clip at 1.
+    #[default]
+    None,
+    /// c / (1 + c) on luminance.
+    Reinhard,
+    /// Narkowicz's fit of the ACES curve.
+    Aces,
+}
