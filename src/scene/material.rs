@@ -3,7 +3,7 @@
 use super::Rgb;
 use crate::diag::Span;
 use crate::math::Affine;
-use crate::math::field::Field;
+use crate::math::field::{Fault, Field};
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -210,4 +210,13 @@ pub struct SampledFunction {
     pub input: SampleInput,
     /// The function's place, for faults.
     pub span: Span,
+    /// The places of its expressions, by the site of a [`crate::math::field::Fault`].
+    pub sites: Vec<Span>,
+}
+
+impl SampledFunction {
+    /// The place of the expression that a fault names.
+    pub fn place(&self, fault: Fault) -> Span {
+        self.sites.get(fault.site as usize).copied().unwrap_or(self.span)
+    }
 }
