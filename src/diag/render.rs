@@ -1,1 +1,181 @@
-//! Diagnostics as text: for people (miette), for editors (one line each), for programs (JSON lines).
+//! Diagnostics as text: for people ([`human`]), one line each ([`short()`]), and for programs ([`json()`], JSON lines).
+//!
+//! Nothing here prints, or asks what the output is: [`Style`] says it.
+
+mod human;
+mod json;
+mod short;
+
+pub use human::{Style, human};
+pub use json::{SCHEMA, json};
+pub use short::short;
+
+use super::{Diagnostic, Severity};
+
+/// How many of each severity there are.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
+pub struct Counts {
+    /// Errors.
+    pub errors: usize,
+    /// Warnings.
+    pub warnings: usize,
+}
+
+impl Counts {
+    /// Counts them.
+    pub fn of(diagnostics: &[Diagnostic]) -> Self {
+        let errors = diagnostics.iter().filter(|d| d.severity == Severity::Error).count();
+        Counts { errors, warnings: diagnostics.len() - errors }
+    }
+}
+
+impl std::fmt::Display for Counts {
+    /// "2 errors, 1 warning", "1 error", "no errors".
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let many = |n: usize, word: &str| format!("{n} {word}{}", if n == 1 { "" } else { "s" });
+        match (self.errors, self.warnings) {
+            (0, 0) => f.write_str("no errors"),
+            (0, w) => f.write_str(&many(w, "warning")),
+            (e, 0) => f.write_str(&many(e, "error")),
+            (e, w) => write!(f, "{}, {}", many(e, "error"), many(w, "warning")),
+        }
+    }
+}
+
+/// The word of a severity: "error", "warning".
+fn severity_word(severity: Severity) -> &'static str {
+    match severity {
+        Severity::Error => "error",
+        Severity::Warning => "warning",
+    }
+}
+
+/// The text with every control character that a terminal would act on replaced: a scene is somebody else's text.
+fn harmless(text: &str) -> std::borrow::Cow<'_, str> {
+    let acts = |c: char| c.is_control() && c != '\n' && c != '\t';
+    if text.contains(acts) { text.replace(acts, "\u{fffd}").into() } else { text.into() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::diag::{Code, SourceMap, Span};
+
+    pub(super) fn sample() -> (SourceMap, Vec<Diagnostic>) {
+        let mut sources = SourceMap::default();
+        let main = sources.add("main.scene", "let a = 1\nsphere { radius raduis }\n");
+        let other = sources.add("other.scene", "// é\nlet radius = 2\n");
+        let fault = Diagnostic::new(Code::UnknownName, Span::new(main, 26, 32), "`raduis` is not defined")
+            .label("no such name")
+            .also(Span::new(main, 4, 5), "this is near")
+            .also(Span::new(other, 10, 16), "defined here")
+            .hint("did you mean `radius`?")
+            .trace(vec![crate::diag::Frame { span: Span::new(main, 10, 16), text: "ball(1)".into() }]);
+        let whole = Diagnostic::new(Code::NoLight, None, "nothing lights the scene");
+        (sources, vec![fault, whole])
+    }
+
+    #[test]
+    fn one_of_a_kind_takes_no_plural() {
+        assert_eq!(Counts { errors: 1, warnings: 2 }.to_string(), "1 error, 2 warnings");
+        assert_eq!(Counts { errors: 0, warnings: 1 }.to_string(), "1 warning");
+        assert_eq!(Counts::default().to_string(), "no errors");
+    }
+
+    #[test]
+    fn short_lines_name_file_line_and_column() {
+        let (sources, found) = sample();
+        assert_eq!(
+            short(&found, &sources),
+            "main.scene:2:17: error[E0101]: `raduis` is not defined\n\
+             warning[W0602]: nothing lights the scene\n"
+        );
+    }
+
+    #[test]
+    fn json_lines_hold_the_promised_keys_and_end_in_a_summary() {
+        let (sources, found) = sample();
+        let text = json(&found, &sources);
+        let lines: Vec<serde_json::Value> =
+            text.lines().map(|l| serde_json::from_str(l).expect("each line is JSON")).collect();
+        assert_eq!(lines.len(), 3);
+        let keys = |v: &serde_json::Value| v.as_object().map(|o| o.keys().cloned().collect::<Vec<_>>());
+        let promised = ["schema", "severity", "code", "message", "file", "span", "labels", "hints", "trace"];
+        assert_eq!(keys(&lines[0]).expect("an object"), promised);
+        assert_eq!(
+            lines[0]["span"].to_string(),
+            r#"{"start":26,"end":32,"line":2,"column":17,"end_line":2,"end_column":23}"#
+        );
+        assert!(lines[1]["file"].is_null() && lines[1]["span"].is_null());
+        assert_eq!(lines[2].to_string(), r#"{"summary":{"errors":1,"warnings":1}}"#);
+    }
+
+    #[test]
+    fn the_human_form_shows_the_place_the_other_file_the_hint_and_the_trace() {
+        let (sources, found) = sample();
+        let text = human(&found, &sources, Style::plain(80));
+        for part in [
+            "error[E0101]",
+            "main.scene:2:17",
+            "no such name",
+            "this is near",
+            "other.scene:2:5",
+            "defined here",
+            "did you mean `radius`?",
+            "in ball(1), at main.scene:2:1",
+            "warning[W0602]",
+        ] {
+            assert!(text.contains(part), "{part} is missing in\n{text}");
+        }
+        assert!(!text.contains('\u{1b}'));
+    }
+
+    #[test]
+    fn a_line_without_end_is_clipped_around_its_fault() {
+        let mut sources = SourceMap::default();
+        let text = format!("{}@{}", "1 ".repeat(500_000), " 2".repeat(500_000));
+        let id = sources.add("long.scene", text);
+        let fault = Diagnostic::new(Code::Syntax, Span::new(id, 1_000_000, 1_000_001), "no")
+            .also(Span::new(id, 0, 1), "and far away");
+        let text = human(&[fault], &sources, Style::plain(80));
+        assert!(text.len() < 5_000 && text.contains("long.scene:1:1000001"), "{} bytes", text.len());
+        assert!(text.contains("and far away"), "{text}");
+    }
+
+    #[test]
+    fn more_than_twenty_are_counted_and_not_shown() {
+        let mut sources = SourceMap::default();
+        let id = sources.add("many.scene", "x ".repeat(30));
+        let found: Vec<_> = (0..30)
+            .map(|i| Diagnostic::new(Code::UnknownName, Span::new(id, 2 * i, 2 * i + 1), format!("no {i}")))
+            .collect();
+        let text = human(&found, &sources, Style::plain(80));
+        assert!(text.contains("no 19") && !text.contains("no 20"), "{text}");
+        assert!(text.contains("10 more"), "{text}");
+    }
+
+    #[test]
+    fn a_fault_at_the_end_of_the_text_or_of_an_empty_one_is_still_placed() {
+        let mut sources = SourceMap::default();
+        let ends = sources.add("ends.scene", "sphere {\n\n");
+        let empty = sources.add("empty.scene", "");
+        let at_end =
+            Diagnostic::new(Code::Unclosed, Span::new(ends, 10, 10), "not closed").label("ends here");
+        let text = human(&[at_end], &sources, Style::plain(80));
+        assert!(text.contains("ends here"), "{text}");
+        let nothing = Diagnostic::new(Code::Syntax, Span::new(empty, 0, 0), "empty");
+        assert!(human(&[nothing], &sources, Style::plain(80)).contains("empty.scene"));
+    }
+
+    #[test]
+    fn a_scene_cannot_speak_to_the_terminal() {
+        let mut sources = SourceMap::default();
+        let id = sources.add("esc.scene", "let a = \u{1b}[2J\u{7} b\n");
+        let fault = Diagnostic::new(Code::Syntax, Span::new(id, 8, 9), "found \u{1b}[2J");
+        let plain = human(&[fault.clone()], &sources, Style::plain(80));
+        assert!(!plain.contains('\u{1b}') && !plain.contains('\u{7}'));
+        let coloured = human(&[fault.clone()], &sources, Style { colour: true, width: 80 });
+        assert!(!coloured.contains("\u{1b}[2J"));
+        assert!(!short(&[fault], &sources).contains('\u{1b}'));
+    }
+}

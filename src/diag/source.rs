@@ -95,6 +95,18 @@ impl SourceMap {
         LineColumn { line, column: source.text[start..offset].chars().count() + 1 }
     }
 
+    /// The number of the line that holds a byte, from 0.
+    pub fn line_index(&self, id: SourceId, offset: usize) -> usize {
+        self.sources[id.0 as usize].line_starts.partition_point(|&start| start as usize <= offset) - 1
+    }
+
+    /// The bytes of the lines `first..=last`, from 0 and clamped to the file, with their line ends.
+    pub fn lines(&self, id: SourceId, first: usize, last: usize) -> std::ops::Range<usize> {
+        let source = &self.sources[id.0 as usize];
+        let start = |line: usize| source.line_starts.get(line).map_or(source.text.len(), |s| *s as usize);
+        start(first)..start(last + 1)
+    }
+
     /// The ids of all files, in the order they were added.
     pub fn ids(&self) -> impl Iterator<Item = SourceId> + use<> {
         (0..self.sources.len() as u32).map(SourceId)
