@@ -4,7 +4,6 @@ use super::table::Builtin;
 use crate::diag::Span;
 use crate::math::Affine;
 use crate::scene::{Camera, Light, Material, Object, Pattern, RenderSettings};
-use crate::syntax::ast::Name;
 use glam::{DVec2, DVec3, DVec4};
 use std::rc::Rc;
 use std::sync::Arc;
@@ -24,8 +23,8 @@ pub enum Value {
     Vector3(DVec3),
     /// Four numbers.
     Vector4(Rc<DVec4>),
-    /// A list.
-    List(Rc<Vec<Value>>),
+    /// A list. Made with [`Value::list`].
+    List(Rc<List>),
     /// Integers or steps.
     Range(Rc<RangeValue>),
     /// A function of the scene: `fn`, or `p => …` with what it captured.
@@ -51,7 +50,36 @@ pub enum Value {
     /// An imported file: `trees.oak`.
     Module(Rc<super::eval::Module>),
     /// A bare word where a property takes words: `lobe phong`.
-    Word(Name),
+    Word(Rc<str>),
+}
+
+/// The elements of a list; reads as a slice. Lists nested without bound are dropped without recursion.
+#[derive(Debug, Default)]
+pub struct List(Vec<Value>);
+
+impl From<Vec<Value>> for List {
+    fn from(elements: Vec<Value>) -> List {
+        List(elements)
+    }
+}
+
+impl std::ops::Deref for List {
+    type Target = [Value];
+    fn deref(&self) -> &[Value] {
+        &self.0
+    }
+}
+
+impl Value {
+    /// A list of these elements.
+    pub fn list(elements: Vec<Value>) -> Value {
+        Value::List(Rc::new(List(elements)))
+    }
+
+    /// A text.
+    pub fn text(text: &str) -> Value {
+        Value::Text(text.into())
+    }
 }
 
 /// `start..end step step`. Computed by index, so that steps do not add up their rounding: element i is start + i·step.
@@ -77,8 +105,8 @@ pub struct Fragment {
 /// A property with its values, as an item gave it.
 #[derive(Clone, Debug)]
 pub struct Given {
-    /// The property's name.
-    pub name: Name,
+    /// The property's name, shared by all that the item gives.
+    pub name: Rc<str>,
     /// The name's place.
     pub name_span: Span,
     /// The values with their places; none for a flag.
