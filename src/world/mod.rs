@@ -1,16 +1,27 @@
 //! What rays see: the scene flattened into shapes, trees, lights and surfaces, ready for any number of threads.
 //! Knows nothing of the language; a user's function reaches it as a [`crate::math::field::Field`].
+//!
+//! [`lower`] makes a [`World`] of a scene's nodes; [`World::closest`], [`World::occluded`] and [`World::transmittance`] ask
+//! it about rays; [`Hit::spawn`] goes on from where a ray ended.
 
 pub mod bsdf;
 pub mod bvh;
+mod emitter;
+mod hit;
 pub mod light;
 pub mod lower;
 pub mod shape;
 pub mod texture;
 
-use crate::diag::Span;
-use crate::scene::{Material, Rgb};
-use glam::{DVec2, DVec3};
+pub use emitter::{Emitter, EmitterShape, PlacedLight};
+pub use hit::{Hit, SurfacePoint};
+
+use crate::diag::{Diagnostic, Span};
+use crate::math::Aabb;
+use crate::scene::assets::Loader;
+use crate::scene::{Accelerator, Material, Node, Rgb};
+use glam::DVec3;
+use std::sync::Arc;
 
 /// A half-line, or a piece of one.
 #[derive(Clone, Copy, Debug)]
@@ -36,36 +47,11 @@ pub enum RayKind {
     Indirect,
 }
 
-/// Where a ray meets a surface. Everything in world space unless said otherwise.
-#[derive(Clone, Debug)]
-pub struct Hit<'w> {
-    /// Distance along the ray, in multiples of its direction's length.
-    pub t: f64,
-    /// The point, put back onto the surface.
-    pub point: DVec3,
-    /// Bound on the absolute error of each coordinate of `point`.
-    pub error: DVec3,
-    /// Unit geometric normal, outward for closed shapes whatever the transforms.
-    pub geometric_normal: DVec3,
-    /// Unit shading normal, on the geometric normal's side.
-    pub normal: DVec3,
-    /// Unit tangent along growing u, perpendicular to `normal` (arbitrary where u has no direction).
-    pub tangent: DVec3,
-    /// Surface parameters.
-    pub uv: DVec2,
-    /// The point in the object's own space before its transforms, for solid patterns.
-    pub local_point: DVec3,
-    /// The material.
-    pub material: &'w Material,
-    /// Which primitive of the world, for provenance and for emitters.
-    pub primitive: PrimitiveId,
-}
-
 /// A primitive of the world as placed: which one, and through which placement.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct PrimitiveId {
-    /// The placement, 0 for the world's own primitives.
-    pub instance: u32,
+    /// The placement, 0 for the world's own primitives. Nested placements multiply, hence the width.
+    pub instance: u64,
     /// The shape within it.
     pub shape: u32,
     /// The triangle within a mesh, else 0.
@@ -83,8 +69,89 @@ pub struct Provenance {
     pub name: Option<Box<str>>,
 }
 
+/// How a world is made.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct WorldOptions {
+    /// The tree over the shapes. A kd-tree is not built yet and counts as `bvh`.
+    pub accelerator: Accelerator,
+}
+
+/// How large a world is.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
+pub struct WorldStats {
+    /// Shapes stored, instances' shapes once, triangles of meshes apart.
+    pub shapes: u64,
+    /// Triangles of meshes stored.
+    pub triangles: u64,
+    /// Placements of groups and meshes.
+    pub instances: u64,
+    /// Trees built.
+    pub trees: u64,
+    /// Nodes of all trees.
+    pub tree_nodes: u64,
+}
+
 /// Everything that rays see.
-pub struct World {}
+pub struct World {
+    /// Point, spot, sun and sky lights, in the order of the scene.
+    pub lights: Vec<PlacedLight>,
+    /// Surfaces that emit: the objects of area lights, and objects whose material has `emit`.
+    pub emitters: Vec<Emitter>,
+}
 
 /// A factor per colour channel.
 pub type Transmittance = Rgb;
+
+impl World {
+    /// Flattens a scene's nodes (taking them, so that each is freed as it goes), reads the meshes they place, and builds the trees.
+    pub fn new(nodes: Vec<Node>, options: &WorldOptions, loader: &dyn Loader) -> (World, Vec<Diagnostic>) {
+        let _ = (nodes, options, loader);
+        (World { lights: Vec::new(), emitters: Vec::new() }, Vec::new())
+    }
+
+    /// The first thing a ray meets, before `t_max`, that is not hidden from it.
+    pub fn closest(&self, ray: &Ray) -> Option<Hit<'_>> {
+        let _ = ray;
+        None
+    }
+
+    /// Whether anything at all stands between the ray's origin and its `t_max`, transparent or not.
+    pub fn occluded(&self, ray: &Ray) -> bool {
+        let _ = ray;
+        false
+    }
+
+    /// What is left of the light along a shadow ray. `passes` says what share each surface on the way lets through (0 for most);
+    /// it is asked in order until nothing is left.
+    pub fn transmittance(&self, ray: &Ray, passes: impl Fn(&Hit<'_>) -> Rgb) -> Transmittance {
+        let _ = (ray, passes);
+        Rgb::ONE
+    }
+
+    /// Where a primitive came from.
+    pub fn provenance(&self, primitive: PrimitiveId) -> Option<Provenance> {
+        let _ = primitive;
+        None
+    }
+
+    /// The index in `emitters` of the emitter that a primitive is part of.
+    pub fn emitter_of(&self, primitive: PrimitiveId) -> Option<usize> {
+        let _ = primitive;
+        None
+    }
+
+    /// The box around all bounded shapes; empty for none.
+    pub fn bounds(&self) -> Aabb {
+        Aabb::EMPTY
+    }
+
+    /// Every material that a hit may report, each once.
+    pub fn materials(&self) -> &[Arc<Material>] {
+        &[]
+    }
+
+    /// What was made.
+    pub fn stats(&self) -> WorldStats {
+        WorldStats::default()
+    }
+}

@@ -1,0 +1,101 @@
+//! Where a ray met a surface, and the rays that go on from there.
+//!
+//! A point on a surface is known up to a bound on its rounding error, so a new ray starts far enough along the normal to be
+//! clear of the surface whatever the rounding was, and no farther: no absolute distance appears. Pharr, Jakob & Humphreys,
+//! *Physically Based Rendering* (4th ed.) §6.8.
+
+use super::{PrimitiveId, Ray, RayKind};
+use crate::math::error::gamma;
+use crate::scene::Material;
+use glam::{DVec2, DVec3};
+
+/// Where a ray meets a surface. Everything in world space unless said otherwise.
+#[derive(Clone, Debug)]
+pub struct Hit<'w> {
+    /// Distance along the ray, in multiples of its direction's length.
+    pub t: f64,
+    /// The point, put back onto the surface.
+    pub point: DVec3,
+    /// Bound on the absolute error of each coordinate of `point`.
+    pub error: DVec3,
+    /// Unit geometric normal, outward for closed shapes whatever the transforms.
+    pub geometric_normal: DVec3,
+    /// Unit shading normal, on the geometric normal's side.
+    pub normal: DVec3,
+    /// Unit tangent along growing u, perpendicular to `normal` (arbitrary where u has no direction).
+    pub tangent: DVec3,
+    /// Surface parameters.
+    pub uv: DVec2,
+    /// The point in the object's own space before its transforms, for solid patterns.
+    pub local_point: DVec3,
+    /// The material.
+    pub material: &'w Material,
+    /// Which primitive of the world, for provenance and for emitters.
+    pub primitive: PrimitiveId,
+}
+
+/// A point on a surface with what is needed to start or end a ray there.
+#[derive(Clone, Copy, Debug)]
+pub struct SurfacePoint {
+    /// The point.
+    pub point: DVec3,
+    /// Bound on the absolute error of each coordinate.
+    pub error: DVec3,
+    /// Unit geometric normal.
+    pub normal: DVec3,
+}
+
+impl SurfacePoint {
+    /// The point moved clear of its surface, to the side that `direction` points to.
+    pub fn offset_toward(&self, direction: DVec3) -> DVec3 {
+        let distance = self.normal.abs().dot(self.error);
+        let offset =
+            if direction.dot(self.normal) < 0.0 { -self.normal * distance } else { self.normal * distance };
+        let moved = self.point + offset;
+        DVec3::new(away(moved.x, offset.x), away(moved.y, offset.y), away(moved.z, offset.z))
+    }
+}
+
+/// The next float in the direction of `offset`, so that rounding the sum cannot undo it.
+fn away(x: f64, offset: f64) -> f64 {
+    if offset > 0.0 {
+        x.next_up()
+    } else if offset < 0.0 {
+        x.next_down()
+    } else {
+        x
+    }
+}
+
+impl Hit<'_> {
+    /// The point with its error and geometric normal.
+    pub fn surface_point(&self) -> SurfacePoint {
+        SurfacePoint { point: self.point, error: self.error, normal: self.geometric_normal }
+    }
+
+    /// A ray without end from the point, clear of the surface on the side that `direction` points to.
+    pub fn spawn(&self, direction: DVec3, kind: RayKind) -> Ray {
+        let origin = self.surface_point().offset_toward(direction);
+        Ray { origin, direction, t_max: f64::INFINITY, kind }
+    }
+
+    /// A shadow ray to a point in space (not on a surface): unit direction, `t_max` the distance.
+    pub fn spawn_to(&self, target: DVec3) -> Ray {
+        let origin = self.surface_point().offset_toward(target - self.point);
+        shadow_ray(origin, target)
+    }
+
+    /// A shadow ray to a point on a surface: ends clear of that surface by its own bound.
+    pub fn spawn_to_surface(&self, target: &SurfacePoint) -> Ray {
+        let origin = self.surface_point().offset_toward(target.point - self.point);
+        shadow_ray(origin, target.offset_toward(self.point - target.point))
+    }
+}
+
+/// Ends short of the target by the rounding of the distance and of the direction (a length is 4 roundings, a quotient 1).
+fn shadow_ray(origin: DVec3, target: DVec3) -> Ray {
+    let to = target - origin;
+    let distance = to.length();
+    let t_max = distance * (1.0 - gamma(8));
+    Ray { origin, direction: to / distance, t_max, kind: RayKind::Shadow }
+}
