@@ -11,6 +11,7 @@ pub trait Tracer: Sync {
 }
 
 pub mod camera;
+pub mod compare;
 pub mod film;
 pub mod output;
 pub mod sampler;

@@ -1,3 +1,78 @@
 //! The command `ogee`: parses its arguments, calls the library, prints, and exits. Printing and exit codes live here alone.
 
-fn main() {}
+mod args;
+mod commands;
+mod place;
+mod speech;
+
+use args::{Command, Ogee};
+use clap::Parser;
+use speech::{Ended, Exit, Failure};
+use std::process::ExitCode;
+use std::sync::Mutex;
+
+fn main() -> ExitCode {
+    let ogee = match Ogee::try_parse() {
+        Ok(ogee) => ogee,
+        Err(error) => return usage(&error),
+    };
+    let exit = match guarded(|| run(ogee.command)) {
+        Ok(exit) => exit,
+        Err(failure) => {
+            speech::tell_failure(&failure);
+            failure.exit
+        }
+    };
+    exit.into()
+}
+
+fn run(command: Command) -> Ended {
+    match command {
+        Command::Render(args) => commands::render::run(&args),
+        Command::Check(args) => commands::check::run(&args),
+        Command::Eval(args) => commands::eval::run(&args),
+        Command::Ast(args) => commands::ast::run(&args),
+        Command::Inspect(args) => commands::inspect::run(&args),
+        Command::Fmt(args) => commands::fmt::run(&args),
+        Command::Test(args) => commands::test::run(&args),
+        Command::Compare(args) => commands::compare::run(&args),
+        Command::Docs(args) => commands::docs::run(&args),
+        Command::Explain(args) => commands::explain::run(&args),
+        Command::Completions(args) => commands::shell::completions(&args),
+        Command::Man(args) => commands::shell::man(&args),
+        Command::Repl(_) => Err(Failure::not_built("`ogee repl`")),
+        Command::Bench(_) => Err(Failure::not_built("`ogee bench`")),
+    }
+}
+
+/// Help and versions go to standard output and are no fault; the rest is said, and exits 2.
+fn usage(error: &clap::Error) -> ExitCode {
+    // A reader that went away needs no help.
+    let _ = error.print();
+    if error.use_stderr() { Exit::Usage.into() } else { Exit::Done.into() }
+}
+
+/// Runs a command; a panic in it is a fault of Ogee, and is said so in a sentence instead of a stack of frames.
+fn guarded(command: impl FnOnce() -> Ended) -> Ended {
+    static CAUGHT: Mutex<Option<String>> = Mutex::new(None);
+    std::panic::set_hook(Box::new(|panic| {
+        let payload = panic.payload();
+        let what = payload.downcast_ref::<&str>().copied();
+        let what = what.or(payload.downcast_ref::<String>().map(String::as_str)).unwrap_or("no message");
+        let place = panic.location().map_or(String::new(), |at| format!(" ({}:{})", at.file(), at.line()));
+        if let Ok(mut caught) = CAUGHT.lock() {
+            caught.get_or_insert(format!("{what}{place}"));
+        }
+    }));
+    std::panic::catch_unwind(std::panic::AssertUnwindSafe(command)).unwrap_or_else(|_| {
+        let what = CAUGHT.lock().ok().and_then(|mut caught| caught.take()).unwrap_or_default();
+        Err(Failure {
+            exit: Exit::Machine,
+            message: format!(
+                "Ogee itself is at fault, not your scene: {what}\n\
+                 Please report it, with the scene and the command, to those who make Ogee {}.",
+                env!("CARGO_PKG_VERSION")
+            ),
+        })
+    })
+}

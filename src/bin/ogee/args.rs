@@ -1,0 +1,419 @@
+//! The command line as clap reads it. Help, completions and man pages come from here and from nowhere else.
+
+use clap::{Args, Parser, Subcommand, ValueEnum, ValueHint};
+use clap_complete::Shell;
+use ogee::scene::{Accelerator, TracerKind};
+use std::path::PathBuf;
+use std::str::FromStr;
+
+/// Ogee: write a scene as text, get a picture.
+#[derive(Parser)]
+#[command(name = "ogee", version, about, arg_required_else_help = true, max_term_width = 100)]
+#[command(after_help = "`-` in place of a file is standard input or output. \
+    Exit codes: 0 done, 1 the scene is at fault or a comparison failed, 2 the command line is, \
+    3 the machine is (disk, memory, an unreadable place), 130 interrupted, with the picture so far saved.")]
+pub struct Ogee {
+    /// What to do.
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+/// The commands.
+#[derive(Subcommand)]
+pub enum Command {
+    /// Render a scene to a picture
+    Render(Box<Render>),
+    /// Say everything that is wrong with scenes, and render nothing
+    Check(Check),
+    /// Print the value of an expression
+    Eval(Eval),
+    /// Evaluate expressions again and again
+    Repl(Unbuilt),
+    /// Print how a scene was read: its syntax tree
+    Ast(Ast),
+    /// Print what a scene evaluates to: its objects, lights and cameras
+    Inspect(Inspect),
+    /// Lay out scenes in the one canonical way, comments kept
+    Fmt(Fmt),
+    /// Run the asserts of scenes, and compare their parse and picture with the snapshots beside them
+    Test(Test),
+    /// Measure how far two pictures are apart
+    Compare(Compare),
+    /// Measure speed against error
+    Bench(Unbuilt),
+    /// Print the reference page of a block, a function or a constant; or the whole reference
+    Docs(Docs),
+    /// Explain a diagnostic's code, with a broken and a mended scene; or list all codes
+    Explain(Explain),
+    /// Print a completion script for a shell
+    Completions(Completions),
+    /// Print the man page, or write one for each command into a folder
+    Man(Man),
+}
+
+/// What a command that is not there yet is given.
+#[derive(Args)]
+pub struct Unbuilt {
+    /// Anything
+    #[arg(trailing_var_arg = true, allow_hyphen_values = true, hide = true)]
+    pub rest: Vec<String>,
+}
+
+/// What shapes every evaluation.
+#[derive(Args, Clone, Default)]
+pub struct Evaluation {
+    /// Replace a top-level `let` of the scene: `--set count=12`
+    #[arg(long, value_name = "NAME=VALUE", value_parser = pair)]
+    pub set: Vec<(String, String)>,
+    /// `time` in the scene, 0 up to 1 over an animation
+    #[arg(long, value_name = "T", value_parser = finite, allow_negative_numbers = true)]
+    pub time: Option<f64>,
+    /// Raise a guard: `--limit calls=100000`; nesting, calls, turns, list, file, memory
+    #[arg(long, value_name = "NAME=N", value_parser = limit)]
+    pub limit: Vec<(LimitName, u64)>,
+}
+
+/// `ogee render`.
+#[derive(Args)]
+#[allow(clippy::struct_excessive_bools, reason = "flags of a command line")]
+pub struct Render {
+    /// The scene; `-` reads standard input
+    #[arg(value_hint = ValueHint::FilePath)]
+    pub file: PathBuf,
+    /// The picture: .png, .jpg, .hdr or .exr; `-` writes PNG to standard output [default: the scene's name, .png]
+    #[arg(short, long, value_name = "PICTURE", value_hint = ValueHint::FilePath)]
+    pub output: Option<PathBuf>,
+    /// Width and height in pixels
+    #[arg(long, value_name = "WxH", value_parser = size)]
+    pub size: Option<[u32; 2]>,
+    /// How light is followed
+    #[arg(long, value_name = "TRACER", value_enum)]
+    pub tracer: Option<Tracer>,
+    /// Samples a pixel
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    pub samples: Option<u32>,
+    /// At most so many segments from the camera
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    pub depth: Option<u32>,
+    /// Seed of every random number
+    #[arg(long, value_name = "N")]
+    pub seed: Option<u64>,
+    /// The tree that finds what a ray meets
+    #[arg(long, value_name = "TREE", value_enum)]
+    pub accelerator: Option<Tree>,
+    /// The camera with this label
+    #[arg(long, value_name = "LABEL")]
+    pub camera: Option<String>,
+    #[command(flatten)]
+    pub evaluation: Evaluation,
+    /// Render these frames of an animation: `0..24`
+    #[arg(long, value_name = "A..B")]
+    pub frames: Option<String>,
+    /// Render a part of the picture alone, in pixels from its top left corner
+    #[arg(long, value_name = "X,Y,W,H", value_parser = crop)]
+    pub crop: Option<[u32; 4]>,
+    /// Threads to work with [default: one a core]
+    #[arg(long, value_name = "N", value_parser = threads)]
+    pub threads: Option<usize>,
+    /// Brighten by this many stops
+    #[arg(long, value_name = "STOPS", value_parser = finite, allow_negative_numbers = true)]
+    pub exposure: Option<f64>,
+    /// Further layers of an EXR picture: depth, normal, …
+    #[arg(long, value_name = "LAYER,…")]
+    pub layers: Option<String>,
+    /// Stop after this time: `30s`
+    #[arg(long, value_name = "TIME")]
+    pub budget: Option<String>,
+    /// Stop where the estimated error is below this
+    #[arg(long, value_name = "RMSE")]
+    pub error: Option<String>,
+    /// Remove noise from the finished picture
+    #[arg(long)]
+    pub denoise: bool,
+    /// Print what was made and how long it took, on standard output
+    #[arg(long, value_name = "FORMAT", value_enum)]
+    pub stats: Option<StatsFormat>,
+}
+
+/// `ogee check`.
+#[derive(Args)]
+pub struct Check {
+    /// Scenes; `-` reads standard input
+    #[arg(required = true, value_hint = ValueHint::FilePath)]
+    pub files: Vec<PathBuf>,
+    /// How diagnostics are written; json goes to standard output
+    #[arg(long, value_enum, default_value_t = DiagnosticFormat::Human)]
+    pub format: DiagnosticFormat,
+    #[command(flatten)]
+    pub evaluation: Evaluation,
+}
+
+/// `ogee eval`.
+#[derive(Args)]
+pub struct Eval {
+    /// The expression
+    #[arg(value_name = "EXPR", allow_hyphen_values = true)]
+    pub expression: String,
+    /// A scene whose names the expression may use
+    #[arg(long = "in", value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub file: Option<PathBuf>,
+    /// Print numbers with so many digits after the point [default: as many as bring the same number back]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(0..=100))]
+    pub digits: Option<u8>,
+    #[command(flatten)]
+    pub evaluation: Evaluation,
+}
+
+/// `ogee ast`.
+#[derive(Args)]
+pub struct Ast {
+    /// The scene; `-` reads standard input
+    #[arg(value_hint = ValueHint::FilePath)]
+    pub file: PathBuf,
+    /// The form of the tree
+    #[arg(long, value_enum, default_value_t = DataFormat::Text)]
+    pub format: DataFormat,
+}
+
+/// `ogee inspect`.
+#[derive(Args)]
+pub struct Inspect {
+    /// The scene; `-` reads standard input
+    #[arg(value_hint = ValueHint::FilePath)]
+    pub file: PathBuf,
+    /// The form of the hierarchy
+    #[arg(long, value_enum, default_value_t = DataFormat::Text)]
+    pub format: DataFormat,
+    #[command(flatten)]
+    pub evaluation: Evaluation,
+}
+
+/// `ogee fmt`.
+#[derive(Args)]
+pub struct Fmt {
+    /// Scenes, rewritten in place; `-` reads standard input and writes to standard output
+    #[arg(required = true, value_hint = ValueHint::FilePath)]
+    pub files: Vec<PathBuf>,
+    /// Write nothing; name the files that are laid out otherwise, and exit 1 if there are any
+    #[arg(long)]
+    pub check: bool,
+}
+
+/// `ogee test`.
+#[derive(Args)]
+pub struct Test {
+    /// Scenes, and folders of scenes
+    #[arg(required = true, value_name = "PATH", value_hint = ValueHint::AnyPath)]
+    pub paths: Vec<PathBuf>,
+    /// Write the snapshots that are missing or differ, instead of failing
+    #[arg(long)]
+    pub bless: bool,
+    #[command(flatten)]
+    pub evaluation: Evaluation,
+}
+
+/// `ogee compare`.
+#[derive(Args)]
+pub struct Compare {
+    /// The picture to judge
+    #[arg(value_name = "A", value_hint = ValueHint::FilePath)]
+    pub actual: PathBuf,
+    /// The reference
+    #[arg(value_name = "B", value_hint = ValueHint::FilePath)]
+    pub reference: PathBuf,
+    /// Exit 1 if the root mean square error is above this
+    #[arg(long, value_name = "X", value_parser = non_negative)]
+    pub max_rmse: Option<f64>,
+    /// The form of the result
+    #[arg(long, value_enum, default_value_t = DataFormat::Text)]
+    pub format: DataFormat,
+}
+
+/// `ogee docs`.
+#[derive(Args)]
+pub struct Docs {
+    /// A kind of block, a function or a constant; without it, the whole reference
+    pub name: Option<String>,
+}
+
+/// `ogee explain`.
+#[derive(Args)]
+pub struct Explain {
+    /// A code as diagnostics show it: E0101
+    pub code: Option<String>,
+}
+
+/// `ogee completions`.
+#[derive(Args)]
+pub struct Completions {
+    /// The shell
+    pub shell: Shell,
+}
+
+/// `ogee man`.
+#[derive(Args)]
+pub struct Man {
+    /// The folder; it is made if it is not there
+    #[arg(value_hint = ValueHint::DirPath)]
+    pub folder: Option<PathBuf>,
+}
+
+/// Forms of diagnostics.
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum DiagnosticFormat {
+    /// For people
+    Human,
+    /// An object a line
+    Json,
+    /// `file:line:column: error[CODE]: message`
+    Short,
+}
+
+/// Forms of data.
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum DataFormat {
+    /// For people
+    Text,
+    /// For programs
+    Json,
+}
+
+/// Forms of `--stats`.
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum StatsFormat {
+    /// One JSON object
+    Json,
+}
+
+/// The tracers by the language's words.
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+#[value(rename_all = "lower")]
+#[allow(missing_docs, reason = "the names are the words of the language")]
+pub enum Tracer {
+    Raycast,
+    Whitted,
+    MonteCarlo,
+    Path,
+    Irradiance,
+    Photon,
+}
+
+impl From<Tracer> for TracerKind {
+    fn from(tracer: Tracer) -> Self {
+        match tracer {
+            Tracer::Raycast => TracerKind::Raycast,
+            Tracer::Whitted => TracerKind::Whitted,
+            Tracer::MonteCarlo => TracerKind::MonteCarlo,
+            Tracer::Path => TracerKind::Path,
+            Tracer::Irradiance => TracerKind::Irradiance,
+            Tracer::Photon => TracerKind::Photon,
+        }
+    }
+}
+
+/// The accelerators by the language's words.
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+#[value(rename_all = "lower")]
+#[allow(missing_docs, reason = "the names are the words of the language")]
+pub enum Tree {
+    Bvh,
+    KdTree,
+    None,
+}
+
+impl From<Tree> for Accelerator {
+    fn from(tree: Tree) -> Self {
+        match tree {
+            Tree::Bvh => Accelerator::Bvh,
+            Tree::KdTree => Accelerator::KdTree,
+            Tree::None => Accelerator::None,
+        }
+    }
+}
+
+/// The guards of `--limit`.
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+#[allow(missing_docs, reason = "named as the members of `ogee::session::Limits`")]
+pub enum LimitName {
+    Nesting,
+    Calls,
+    Turns,
+    List,
+    File,
+    Memory,
+}
+
+fn pair(text: &str) -> Result<(String, String), String> {
+    match text.split_once('=') {
+        Some((name, value)) if !name.trim().is_empty() && !value.trim().is_empty() => {
+            Ok((name.trim().to_owned(), value.to_owned()))
+        }
+        _ => Err("write it as name=value".to_owned()),
+    }
+}
+
+fn limit(text: &str) -> Result<(LimitName, u64), String> {
+    let (name, value) = pair(text)?;
+    let known = || {
+        let names = LimitName::value_variants().iter().filter_map(ValueEnum::to_possible_value);
+        names.map(|v| v.get_name().to_owned()).collect::<Vec<_>>().join(", ")
+    };
+    let name = LimitName::from_str(&name, true).map_err(|_| format!("the guards are {}", known()))?;
+    let value = value.trim().replace('_', "");
+    let value = value.parse().map_err(|_| format!("`{value}` is not a whole number"))?;
+    Ok((name, value))
+}
+
+fn finite(text: &str) -> Result<f64, String> {
+    match f64::from_str(text) {
+        Ok(value) if value.is_finite() => Ok(value),
+        _ => Err("a finite number is expected".to_owned()),
+    }
+}
+
+fn non_negative(text: &str) -> Result<f64, String> {
+    finite(text).and_then(|x| if x >= 0.0 { Ok(x) } else { Err("a number of at least 0 is expected".into()) })
+}
+
+fn threads(text: &str) -> Result<usize, String> {
+    /// More threads than any machine has gain nothing, and asking for very many exhausts it.
+    const MOST: usize = 4096;
+    match text.parse() {
+        Ok(n) if (1..=MOST).contains(&n) => Ok(n),
+        _ => Err(format!("a whole number from 1 to {MOST} is expected")),
+    }
+}
+
+fn size(text: &str) -> Result<[u32; 2], String> {
+    let sides = text.split_once(['x', 'X', '×']).or_else(|| text.split_once(','));
+    match sides.map(|(w, h)| (w.trim().parse(), h.trim().parse())) {
+        Some((Ok(w), Ok(h))) if w > 0 && h > 0 => Ok([w, h]),
+        _ => Err("write it as WIDTHxHEIGHT, both above 0: 640x480".to_owned()),
+    }
+}
+
+fn crop(text: &str) -> Result<[u32; 4], String> {
+    let numbers: Option<Vec<u32>> = text.split(',').map(|part| part.trim().parse().ok()).collect();
+    match numbers.as_deref() {
+        Some(&[x, y, w, h]) if w > 0 && h > 0 => Ok([x, y, w, h]),
+        _ => Err("write it as x,y,width,height in pixels: 100,50,64,64".to_owned()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_definition_of_the_command_line_is_sound() {
+        <Ogee as clap::CommandFactory>::command().debug_assert();
+    }
+
+    #[test]
+    fn sizes_and_crops_need_all_their_numbers() {
+        assert_eq!(size("64x48"), Ok([64, 48]));
+        assert!(size("64").is_err() && size("0x4").is_err() && size("axb").is_err());
+        assert_eq!(crop("1,2,3,4"), Ok([1, 2, 3, 4]));
+        assert!(crop("1,2,3").is_err() && crop("1,2,0,4").is_err());
+    }
+}

@@ -1,0 +1,36 @@
+//! `ogee check`: everything that is wrong with scenes, and no picture.
+
+use crate::args::{Check, DiagnosticFormat};
+use crate::speech::{Ended, Exit, data, show, tell, tell_failure};
+use ogee::diag::render::{Counts, json, short};
+
+/// Checks each file in turn; a file that cannot be read does not keep the others from being checked.
+pub fn run(args: &Check) -> Ended {
+    let mut session = super::session(&args.evaluation);
+    let mut diagnostics = Vec::new();
+    let mut unreadable = None;
+    for file in &args.files {
+        match super::evaluate(&mut session, file) {
+            Ok(evaluated) => diagnostics.extend(evaluated.diagnostics),
+            Err(failure) => {
+                tell_failure(&failure);
+                unreadable.get_or_insert(failure.exit);
+            }
+        }
+    }
+    let counts = Counts::of(&diagnostics);
+    match args.format {
+        DiagnosticFormat::Human if diagnostics.is_empty() && unreadable.is_none() => tell(counts),
+        DiagnosticFormat::Human => show(&diagnostics, &session.sources),
+        DiagnosticFormat::Json => data(json(&diagnostics, &session.sources))?,
+        DiagnosticFormat::Short => {
+            eprint(&short(&diagnostics, &session.sources));
+            tell(counts);
+        }
+    }
+    Ok(unreadable.unwrap_or(if counts.errors > 0 { Exit::Scene } else { Exit::Done }))
+}
+
+fn eprint(text: &str) {
+    text.lines().for_each(tell);
+}
