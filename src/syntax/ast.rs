@@ -39,15 +39,15 @@ pub enum ItemKind {
     /// name: only evaluation can tell. `name { … }` with a kind's name and no label is an [`ItemKind::Block`].
     Property(Property),
     /// `kind { items }` · `kind label { items }`.
-    Block(Block),
+    Block(Box<Block>),
     /// An expression whose value is placed; never a bare name (see [`ItemKind::Property`]) and never a bare block.
     Placement(Expr),
     /// `let name = expr`.
-    Let(Ident, Expr),
+    Let(Ident, Box<Expr>),
     /// `var name = expr`.
-    Var(Ident, Expr),
+    Var(Ident, Box<Expr>),
     /// `name = expr`.
-    Assign(Ident, Expr),
+    Assign(Ident, Box<Expr>),
     /// `fn name(parameters) …`.
     Function(Box<Function>),
     /// `return expr`; without a value, what the body has produced so far.
@@ -59,7 +59,7 @@ pub enum ItemKind {
     /// `while c { … }`.
     While(Box<While>),
     /// `import "file"` · `import "file" as name`.
-    Import(Import),
+    Import(Box<Import>),
     /// Text that could not be read, already reported. `defines` is the name that it would have bound, if that could be
     /// told (so that its uses are not reported as undefined).
     Bad {
