@@ -5,6 +5,7 @@
 
 pub mod affine;
 pub mod bounds;
+pub mod colour;
 pub mod elementary;
 pub mod error;
 pub mod field;

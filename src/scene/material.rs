@@ -1,6 +1,7 @@
 //! Materials and patterns as they are written.
 
 use super::Rgb;
+use super::assets::image::Picture;
 use crate::diag::Span;
 use crate::math::Affine;
 use crate::math::field::{Fault, Field};
@@ -168,6 +169,8 @@ pub struct ImagePattern {
     pub colour: bool,
     /// The path's place.
     pub span: Span,
+    /// The picture, once it was asked for; `Picture::default()` until then.
+    pub picture: Picture,
 }
 
 /// How a picture goes on beyond its edges.

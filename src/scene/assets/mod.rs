@@ -1,5 +1,10 @@
 //! Files that scenes name: read through a [`Loader`], decoded into plain data, each once.
 
+mod cache;
+pub mod image;
+
+pub use cache::{AssetCache, AssetError};
+
 use std::path::Path;
 
 /// The only way that Ogee reads a file. Tests and the language server bring their own.
