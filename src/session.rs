@@ -1,6 +1,9 @@
 //! The one door to the library for the command line, the tests and the REPL: a [`Session`] holds the sources, the options
 //! and the loader, and turns a file into a scene with everything that is wrong with it.
 
+pub mod inspect;
+mod whole;
+
 use crate::diag::{Diagnostic, SourceMap};
 use crate::lang::value::Value;
 use crate::scene::Scene;

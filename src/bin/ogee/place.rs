@@ -3,6 +3,18 @@
 use crate::speech::{Failure, reason};
 use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
+use std::sync::Mutex;
+
+/// The temporary file that is being written, for a command that has to end in the midst of it.
+static UNFINISHED: Mutex<Option<PathBuf>> = Mutex::new(None);
+
+/// Removes the temporary file that is being written, where there is one.
+pub fn forget_unfinished() {
+    if let Ok(Some(path)) = UNFINISHED.lock().map(|mut path| path.take()) {
+        // The command ends; nobody is left to hear that a file could not be removed.
+        let _ = std::fs::remove_file(path);
+    }
+}
 
 /// Where a file will be written.
 pub enum Place {
@@ -80,11 +92,22 @@ fn temporary(path: &Path) -> std::io::Result<tempfile::NamedTempFile> {
 
 fn write_whole(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
     let mut file = temporary(path)?;
-    file.write_all(bytes)?;
-    if let Ok(meta) = std::fs::metadata(path) {
-        file.as_file().set_permissions(meta.permissions())?;
+    note_unfinished(Some(file.path()));
+    let written = file.write_all(bytes).and_then(|()| {
+        if let Ok(meta) = std::fs::metadata(path) {
+            file.as_file().set_permissions(meta.permissions())?;
+        }
+        Ok(())
+    });
+    let placed = written.and_then(|()| file.persist(path).map(drop).map_err(|error| error.error));
+    note_unfinished(None);
+    placed
+}
+
+fn note_unfinished(path: Option<&Path>) {
+    if let Ok(mut unfinished) = UNFINISHED.lock() {
+        *unfinished = path.map(Path::to_owned);
     }
-    file.persist(path).map(drop).map_err(|error| error.error)
 }
 
 fn write_device(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
