@@ -1,1 +1,184 @@
-//! (film)
+//! What a picture is while it is made: linear RGB radiance per pixel in f64, and what went wrong. Knows neither files nor
+//! tracers. A pixel's samples are summed by one thread in the order of their numbers, so that its bits depend on nothing else.
+
+use super::sampler::RayCounts;
+use super::settings::Crop;
+use crate::diag::Span;
+use crate::math::field::FaultKind;
+use crate::scene::Rgb;
+
+/// A picture of linear radiance, whole or in part.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Film {
+    /// Width and height of the whole picture.
+    pub size: [u32; 2],
+    /// The part that this film holds.
+    pub crop: Crop,
+    /// Mean radiance, row by row from the top; black where not finished.
+    pub pixels: Vec<Rgb>,
+    /// Which pixels are finished; all of them unless the rendering was cancelled.
+    pub finished: Vec<bool>,
+    /// What happened on the way.
+    pub report: Report,
+}
+
+/// What happened while a picture was made.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Report {
+    /// Rays cast.
+    pub rays: RayCounts,
+    /// Camera samples that were not finite and were left out.
+    pub non_finite: u64,
+    /// The first pixel with such a sample, in reading order.
+    pub first_non_finite: Option<Fault>,
+    /// Functions of the scene that were undefined, each with its count of pixels and its first pixel; sorted by place.
+    pub undefined: Vec<Fault>,
+}
+
+/// Something that went wrong at pixels.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Fault {
+    /// Column and row of the first pixel, in reading order.
+    pub pixel: [u32; 2],
+    /// How many pixels.
+    pub count: u64,
+    /// The place in the scene, where one is known: the function, or the object seen at the pixel.
+    pub span: Option<Span>,
+    /// Why a function was undefined; none for samples that were not finite.
+    pub kind: Option<FaultKind>,
+}
+
+impl Report {
+    /// Takes another part's report. The order of the parts does not matter.
+    pub fn merge(&mut self, other: Report) {
+        self.rays += other.rays;
+        self.non_finite += other.non_finite;
+        self.first_non_finite = match (self.first_non_finite, other.first_non_finite) {
+            (Some(a), Some(b)) => Some(a.with(b)),
+            (a, b) => a.or(b),
+        };
+        other.undefined.into_iter().for_each(|fault| self.add_undefined(fault));
+    }
+
+    /// Counts a pixel, or several, where a function was undefined.
+    pub fn add_undefined(&mut self, fault: Fault) {
+        match self.undefined.binary_search_by_key(&place(fault.span), |f| place(f.span)) {
+            Ok(i) => self.undefined[i] = self.undefined[i].with(fault),
+            Err(i) => self.undefined.insert(i, fault),
+        }
+    }
+}
+
+impl Fault {
+    /// Both as one: counts added, the first pixel in reading order.
+    fn with(self, other: Fault) -> Fault {
+        let order = |f: &Fault| (f.pixel[1], f.pixel[0]);
+        let first = if order(&other) < order(&self) { other } else { self };
+        Fault { count: self.count + other.count, ..first }
+    }
+}
+
+fn place(span: Option<Span>) -> Option<(u32, u32, u32)> {
+    span.map(|s| (s.source.0, s.start, s.end))
+}
+
+impl Film {
+    /// A black film with nothing finished.
+    pub fn new(size: [u32; 2], crop: Crop) -> Film {
+        let n = crop.area();
+        Film { size, crop, pixels: vec![Rgb::ZERO; n], finished: vec![false; n], report: Report::default() }
+    }
+
+    /// Shown where a function of the scene is undefined.
+    pub const UNDEFINED: Rgb = Rgb::new(1.0, 0.0, 1.0);
+
+    /// Radiance at a column and row of the film (of its crop).
+    pub fn pixel(&self, x: u32, y: u32) -> Rgb {
+        self.pixels[y as usize * self.crop.width as usize + x as usize]
+    }
+
+    /// True where every pixel is finished.
+    pub fn is_complete(&self) -> bool {
+        self.finished.iter().all(|f| *f)
+    }
+
+    /// Share of the pixels that are finished, 0 … 1.
+    pub fn share_finished(&self) -> f64 {
+        self.finished.iter().filter(|f| **f).count() as f64 / self.finished.len().max(1) as f64
+    }
+
+    /// Mean of all pixels.
+    pub fn mean(&self) -> Rgb {
+        self.pixels.iter().copied().sum::<Rgb>() / self.pixels.len().max(1) as f64
+    }
+}
+
+/// The samples of one pixel on the way to their mean: a box filter over the pixel.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct PixelSum {
+    sum: Rgb,
+    count: u32,
+    /// Samples that were not finite.
+    pub non_finite: u32,
+}
+
+impl PixelSum {
+    /// Takes a sample. One that is not finite is counted and left out, so that it cannot spoil its pixel.
+    pub fn add(&mut self, radiance: Rgb) {
+        if radiance.is_finite() {
+            self.sum += radiance;
+            self.count += 1;
+        } else {
+            self.non_finite += 1;
+        }
+    }
+
+    /// The mean of the finite samples; black for none.
+    pub fn mean(self) -> Rgb {
+        self.sum / f64::from(self.count.max(1))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn many_equal_samples_keep_their_mean() {
+        let mut pixel = PixelSum::default();
+        (0..1 << 22).for_each(|_| pixel.add(Rgb::splat(0.1)));
+        assert!((pixel.mean() - Rgb::splat(0.1)).abs().max_element() < 1e-10);
+    }
+
+    #[test]
+    fn a_sample_that_is_not_finite_is_counted_and_left_out() {
+        let mut pixel = PixelSum::default();
+        [1.0, f64::NAN, 3.0, f64::INFINITY].into_iter().for_each(|x| pixel.add(Rgb::splat(x)));
+        assert_eq!((pixel.mean(), pixel.non_finite), (Rgb::splat(2.0), 2));
+    }
+
+    #[test]
+    fn reports_merge_to_the_same_in_any_order() {
+        let fault = |x, y, count| Fault { pixel: [x, y], count, span: None, kind: None };
+        let one = Report {
+            non_finite: 2,
+            first_non_finite: Some(fault(5, 1, 2)),
+            undefined: vec![fault(0, 3, 1)],
+            ..Default::default()
+        };
+        let two = Report {
+            non_finite: 1,
+            first_non_finite: Some(fault(9, 0, 1)),
+            undefined: vec![fault(7, 2, 4)],
+            ..Default::default()
+        };
+        let merged = |mut a: Report, b: Report| {
+            a.merge(b);
+            a
+        };
+        let both = merged(one.clone(), two.clone());
+        assert_eq!(both, merged(two, one));
+        assert_eq!(both.first_non_finite, Some(fault(9, 0, 3)));
+        assert_eq!(both.undefined, vec![fault(7, 2, 5)]);
+    }
+}

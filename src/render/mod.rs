@@ -1,6 +1,6 @@
 //! Pictures: rays from a camera, radiance by a tracer, sums on a film, files on disk.
 
-use crate::scene::Rgb;
+use crate::scene::{Rgb, TracerKind};
 use crate::world::{Ray, World};
 
 /// A way to find the radiance that arrives along a ray. Made by its constructor from a world, so that what it must prepare
@@ -15,5 +15,19 @@ pub mod compare;
 pub mod film;
 pub mod output;
 pub mod sampler;
+pub mod settings;
 pub mod tiles;
 pub mod whitted;
+
+/// The tracer of a name, ready for a world. None for those that are not built yet.
+pub fn tracer(
+    kind: TracerKind,
+    world: &World,
+    settings: &settings::ResolvedSettings,
+) -> Option<Box<dyn Tracer>> {
+    match kind {
+        TracerKind::Raycast => Some(Box::new(whitted::Whitted::raycast(world, settings))),
+        TracerKind::Whitted => Some(Box::new(whitted::Whitted::new(world, settings))),
+        TracerKind::MonteCarlo | TracerKind::Path | TracerKind::Irradiance | TracerKind::Photon => None,
+    }
+}

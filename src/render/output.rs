@@ -1,1 +1,211 @@
-//! (output)
+//! Pictures as files: 8-bit sRGB as PNG and JPEG, linear radiance as HDR (RGBE) and EXR (32-bit float, with metadata).
+//! A file appears whole or not at all: it is written beside its place and renamed.
+
+use super::film::Film;
+use crate::math::colour::{luminance, srgb_decode};
+use crate::math::elementary::exp2;
+use crate::scene::{Rgb, ToneMap};
+use std::io::Cursor;
+use std::path::Path;
+
+/// The formats, by their extensions.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Format {
+    /// 8-bit sRGB.
+    Png,
+    /// 8-bit sRGB, lossy.
+    Jpeg,
+    /// Radiance's RGBE, linear.
+    Hdr,
+    /// OpenEXR, 32-bit float, linear.
+    Exr,
+}
+
+impl Format {
+    /// The extensions that are known, for messages.
+    pub const EXTENSIONS: [&'static str; 5] = ["png", "jpg", "jpeg", "hdr", "exr"];
+
+    /// By a path's extension, in upper or lower case. None for another or none.
+    pub fn of(path: &Path) -> Option<Format> {
+        match path.extension()?.to_str()?.to_ascii_lowercase().as_str() {
+            "png" => Some(Format::Png),
+            "jpg" | "jpeg" => Some(Format::Jpeg),
+            "hdr" => Some(Format::Hdr),
+            "exr" => Some(Format::Exr),
+            _ => None,
+        }
+    }
+}
+
+/// How radiance becomes 8-bit numbers.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Development {
+    /// In stops: radiance is multiplied by 2 to this power.
+    pub exposure: f64,
+    /// From radiance to 0 … 1.
+    pub tonemap: ToneMap,
+}
+
+/// What an EXR file says of how it was made. No paths and no clocks: the same picture gives the same file.
+#[derive(Clone, Debug, Default, PartialEq, serde::Serialize)]
+pub struct Metadata {
+    /// Of the program.
+    pub version: String,
+    /// A hash of the scene's text.
+    pub scene: String,
+    /// The tracer's name.
+    pub tracer: String,
+    /// Samples per pixel.
+    pub samples: u32,
+    /// Of the random numbers.
+    pub seed: u64,
+    /// Width and height of the whole picture.
+    pub size: [u32; 2],
+}
+
+/// Why a picture could not be made into a file.
+#[derive(Debug, thiserror::Error)]
+pub enum OutputError {
+    /// The encoder refused.
+    #[error("the picture cannot be encoded: {0}")]
+    Encode(String),
+    /// The machine refused.
+    #[error(transparent)]
+    Io(#[from] std::io::Error),
+}
+
+/// A picture as the bytes of a file.
+pub fn encode(
+    film: &Film,
+    format: Format,
+    develop: &Development,
+    about: &Metadata,
+) -> Result<Vec<u8>, OutputError> {
+    let [width, height] = [film.crop.width, film.crop.height];
+    let mut bytes = Cursor::new(Vec::new());
+    match format {
+        Format::Png => {
+            use image::codecs::png::{CompressionType, FilterType, PngEncoder};
+            let encoder =
+                PngEncoder::new_with_quality(&mut bytes, CompressionType::Fast, FilterType::Adaptive);
+            write_rgb8(encoder, &develop_film(film, develop), width, height)?;
+        }
+        Format::Jpeg => {
+            let encoder = image::codecs::jpeg::JpegEncoder::new_with_quality(&mut bytes, JPEG_QUALITY);
+            write_rgb8(encoder, &develop_film(film, develop), width, height)?;
+        }
+        Format::Hdr => {
+            let pixels: Vec<_> = film
+                .pixels
+                .iter()
+                .map(|c| image::Rgb(c.as_vec3().max(glam::Vec3::ZERO).to_array()))
+                .collect();
+            image::codecs::hdr::HdrEncoder::new(&mut bytes)
+                .encode(&pixels, width as usize, height as usize)
+                .map_err(|e| OutputError::Encode(e.to_string()))?;
+        }
+        Format::Exr => write_exr(film, about, &mut bytes)?,
+    }
+    Ok(bytes.into_inner())
+}
+
+/// Of 100: above it files grow much and pictures change little.
+const JPEG_QUALITY: u8 = 92;
+
+fn write_rgb8(
+    encoder: impl image::ImageEncoder,
+    pixels: &[u8],
+    width: u32,
+    height: u32,
+) -> Result<(), OutputError> {
+    encoder
+        .write_image(pixels, width, height, image::ExtendedColorType::Rgb8)
+        .map_err(|e| OutputError::Encode(e.to_string()))
+}
+
+fn write_exr(film: &Film, about: &Metadata, bytes: &mut Cursor<Vec<u8>>) -> Result<(), OutputError> {
+    use exr::prelude::*;
+    let crop = film.crop;
+    let at = |p: Vec2<usize>| {
+        let c = film.pixels[p.y() * crop.width as usize + p.x()];
+        (c.x as f32, c.y as f32, c.z as f32)
+    };
+    let text = |s: &str| Text::new_or_none(s).unwrap_or_default();
+    let mut attributes = LayerAttributes::default();
+    attributes.layer_position = Vec2(crop.x as i32, crop.y as i32);
+    attributes.software_name = Some(text(&format!("ogee {}", about.version)));
+    let json = serde_json::to_string(about).map_err(|e| OutputError::Encode(e.to_string()))?;
+    attributes.comments = Some(text(&json));
+    let layer = Layer::new(
+        (crop.width as usize, crop.height as usize),
+        attributes,
+        // Written by one thread in order, so that the bytes do not depend on who was faster.
+        Encoding {
+            compression: Compression::ZIP16,
+            blocks: Blocks::ScanLines,
+            line_order: LineOrder::Increasing,
+        },
+        SpecificChannels::rgb(at),
+    );
+    let mut image = Image::from_layer(layer);
+    image.attributes.display_window =
+        IntegerBounds::new((0, 0), (film.size[0] as usize, film.size[1] as usize));
+    image.write().non_parallel().to_buffered(bytes).map_err(|e| OutputError::Encode(e.to_string()))
+}
+
+/// All pixels as 8-bit sRGB, row by row.
+pub fn develop_film(film: &Film, develop: &Development) -> Vec<u8> {
+    film.pixels.iter().flat_map(|c| develop.pixel(*c)).collect()
+}
+
+impl Development {
+    /// Linear radiance to 8-bit sRGB.
+    pub fn pixel(&self, radiance: Rgb) -> [u8; 3] {
+        let exposed = if self.exposure == 0.0 { radiance } else { radiance * exp2(self.exposure) };
+        tone(self.tonemap, exposed).to_array().map(to_srgb8)
+    }
+}
+
+fn tone(map: ToneMap, c: Rgb) -> Rgb {
+    match map {
+        ToneMap::None => c,
+        ToneMap::Reinhard => c / (1.0 + luminance(c).max(0.0)),
+        ToneMap::Aces => c * (2.51 * c + 0.03) / (c * (2.43 * c + 0.59) + 0.14),
+    }
+}
+
+/// A linear number in 0 … 1 as 8-bit sRGB (IEC 61966-2-1), clipped, rounded to the nearest.
+pub fn to_srgb8(linear: f64) -> u8 {
+    // A table of where each step begins answers without a power for each channel of each pixel.
+    let steps = srgb_steps();
+    steps.partition_point(|step| *step <= linear) as u8
+}
+
+/// The least linear number that rounds to each of 1 … 255.
+fn srgb_steps() -> &'static [f64; 255] {
+    static STEPS: std::sync::OnceLock<[f64; 255]> = std::sync::OnceLock::new();
+    STEPS.get_or_init(|| std::array::from_fn(|i| srgb_decode((i as f64 + 0.5) / 255.0)))
+}
+
+/// Writes bytes so that the file appears whole or not at all: beside its place, then renamed over it.
+pub fn write_atomically(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
+    use std::io::Write;
+    let folder = match path.parent() {
+        Some(p) if !p.as_os_str().is_empty() => p,
+        _ => Path::new("."),
+    };
+    let mut options = tempfile::Builder::new();
+    options.prefix(".ogee-");
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::PermissionsExt;
+        options.permissions(std::fs::Permissions::from_mode(0o666)); // less what the user's mask takes away
+    }
+    let mut file = options.tempfile_in(folder)?;
+    file.write_all(bytes)?;
+    file.as_file().sync_all()?;
+    file.persist(path).map(drop).map_err(|e| e.error)
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,3 +1,262 @@
-//! (sampler)
-/// The random numbers of one camera sample.
-pub struct Sampler {}
+//! Random numbers: a function of (seed, pixel, sample, dimension) alone, so that a picture is the same for any number of
+//! threads, any order of tiles and any crop. Knows nothing of what the numbers are used for.
+//!
+//! Every pair of dimensions is one 2-D Sobol sequence over the samples of a pixel, shuffled and Owen-scrambled by hashes of
+//! (seed, pixel, dimension): "padding". Burley, *Practical Hash-based Owen Scrambling* (JCGT 9-4, 2020), with the permutation
+//! of Vegdahl's *Building a Better LK Hash* (2021); the second Sobol dimension as in Ahmed, *An Implementation Algorithm of
+//! 2D Sobol Sequence Fast, Elegant, and Compact* (EGSR 2024). Each pair alone is a scrambled (0, 2)-sequence: any 2ᵐ samples
+//! that begin at a multiple of 2ᵐ are stratified in every way that 2ᵐ boxes of equal area can stand.
+
+use crate::world::texture::TextureFault;
+use glam::DVec2;
+
+/// The random numbers of one camera sample, and what is noted while it is traced. Cheap to make; nothing is shared.
+#[derive(Clone, Debug)]
+pub struct Sampler {
+    pixel: u64,
+    sample: u32,
+    dimension: u32,
+    /// Rays cast for this sample.
+    pub rays: RayCounts,
+    /// The function of the scene that was undefined on the way, where one was. Such a pixel is shown magenta.
+    pub undefined: Option<TextureFault>,
+}
+
+/// How many rays were cast, by what for.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct RayCounts {
+    /// From the camera, and on through what is partly transparent.
+    pub camera: u64,
+    /// Toward lights.
+    pub shadow: u64,
+    /// Mirrored.
+    pub reflected: u64,
+    /// Bent through a surface.
+    pub refracted: u64,
+}
+
+impl RayCounts {
+    /// All of them.
+    pub fn total(self) -> u64 {
+        self.camera + self.shadow + self.reflected + self.refracted
+    }
+}
+
+impl std::ops::AddAssign for RayCounts {
+    fn add_assign(&mut self, other: Self) {
+        self.camera += other.camera;
+        self.shadow += other.shadow;
+        self.reflected += other.reflected;
+        self.refracted += other.refracted;
+    }
+}
+
+impl Sampler {
+    /// The numbers of one sample of the pixel in column x and row y of the whole picture.
+    pub fn new(seed: u64, x: u32, y: u32, sample: u32) -> Sampler {
+        let place = u64::from(y) << 32 | u64::from(x);
+        Sampler {
+            pixel: mix(mix(seed ^ GOLDEN).wrapping_add(mix(place))),
+            sample,
+            dimension: 0,
+            rays: RayCounts::default(),
+            undefined: None,
+        }
+    }
+
+    /// The next number, in (0, 1).
+    pub fn next_1d(&mut self) -> f64 {
+        self.next_2d().x
+    }
+
+    /// The next pair, in (0, 1)².
+    pub fn next_2d(&mut self) -> DVec2 {
+        self.next_set().point(0, 1)
+    }
+
+    /// The next dimensions as a set of points that are stratified together. Taken once, before a loop over its points.
+    pub fn next_set(&mut self) -> PointSet {
+        let key = mix(self.pixel.wrapping_add(u64::from(self.dimension).wrapping_mul(GOLDEN)));
+        self.dimension += 1;
+        PointSet { order: key as u32, scramble: mix(key ^ GOLDEN), sample: self.sample }
+    }
+}
+
+/// Two dimensions of a camera sample, of which any number of points may be taken. The points of all samples of the pixel
+/// continue one sequence, so that n points at each of N samples are as even as N·n points at one.
+#[derive(Clone, Copy, Debug)]
+pub struct PointSet {
+    order: u32,
+    scramble: u64,
+    sample: u32,
+}
+
+impl PointSet {
+    /// Point i of the n taken at this camera sample, in (0, 1)².
+    pub fn point(self, i: u32, n: u32) -> DVec2 {
+        let index = owen(self.sample.wrapping_mul(n).wrapping_add(i), self.order);
+        let (x, y) = sobol(index);
+        DVec2::new(unit(owen(x, self.scramble as u32)), unit(owen(y, (self.scramble >> 32) as u32)))
+    }
+}
+
+/// 2⁶⁴ over the golden ratio, odd: Weyl steps that spread well.
+const GOLDEN: u64 = 0x9e37_79b9_7f4a_7c15;
+
+/// A bijection of 64 bits whose every output bit depends on every input bit (Stafford's variant 13 of MurmurHash3's finaliser).
+pub(crate) fn mix(mut x: u64) -> u64 {
+    x = (x ^ (x >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    x = (x ^ (x >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+    x ^ (x >> 31)
+}
+
+/// The middle of the cell that 32 bits name: never 0, never 1.
+fn unit(x: u32) -> f64 {
+    (f64::from(x) + 0.5) * (1.0 / 4_294_967_296.0)
+}
+
+/// Nested uniform scrambling of a binary fraction: each bit is flipped or not by a hash of the bits above it.
+fn owen(x: u32, seed: u32) -> u32 {
+    let mut x = x.reverse_bits();
+    x ^= x.wrapping_mul(0x3d20_adea);
+    x = x.wrapping_add(seed);
+    x = x.wrapping_mul((seed >> 16) | 1);
+    x ^= x.wrapping_mul(0x0552_6c56);
+    x ^= x.wrapping_mul(0x53a2_2864);
+    x.reverse_bits()
+}
+
+/// Point `index` of the 2-D Sobol sequence as binary fractions: van der Corput's, and Pascal's matrix modulo 2 applied to it.
+fn sobol(index: u32) -> (u32, u32) {
+    let x = index.reverse_bits();
+    let mut y = x;
+    y ^= y << 16;
+    y ^= (y & 0x00ff_00ff) << 8;
+    y ^= (y & 0x0f0f_0f0f) << 4;
+    y ^= (y & 0x3333_3333) << 2;
+    y ^= (y & 0x5555_5555) << 1;
+    (x, y)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Sobol's second dimension by its direction numbers: v₁ = 2³¹, vₖ₊₁ = vₖ ^ (vₖ >> 1).
+    fn by_direction_numbers(index: u32) -> u32 {
+        let (mut v, mut y) = (1u32 << 31, 0);
+        for bit in 0..32 {
+            if index >> bit & 1 == 1 {
+                y ^= v;
+            }
+            v ^= v >> 1;
+        }
+        y
+    }
+
+    #[test]
+    fn the_second_dimension_is_sobols() {
+        for index in (0..4096).chain([u32::MAX, 0x8000_0001, 0x1234_5678]) {
+            assert_eq!(sobol(index).1, by_direction_numbers(index), "index {index}");
+        }
+    }
+
+    /// Each box of the 2ᵃ × 2ᵐ⁻ᵃ grids holds one of 2ᵐ points.
+    fn assert_net(points: &[DVec2]) {
+        let m = points.len().trailing_zeros();
+        for a in 0..=m {
+            let (nx, ny) = (1usize << a, 1usize << (m - a));
+            let mut seen = vec![false; points.len()];
+            for p in points {
+                let cell = (p.x * nx as f64) as usize * ny + (p.y * ny as f64) as usize;
+                assert!(!seen[cell], "two points in a box of the {nx} × {ny} grid");
+                seen[cell] = true;
+            }
+        }
+    }
+
+    #[test]
+    fn powers_of_two_of_samples_are_nets_in_every_dimension() {
+        for dimension in 0..20 {
+            let points: Vec<DVec2> = (0..64)
+                .map(|s| {
+                    let mut sampler = Sampler::new(7, 3, 5, s);
+                    for _ in 0..dimension {
+                        sampler.next_1d();
+                    }
+                    sampler.next_2d()
+                })
+                .collect();
+            assert_net(&points);
+        }
+    }
+
+    #[test]
+    fn sets_of_points_are_nets_at_each_sample_and_over_all() {
+        let set = |s| Sampler::new(0, 1, 2, s).next_set();
+        let at_each: Vec<Vec<DVec2>> =
+            (0..4).map(|s| (0..16).map(|i| set(s).point(i, 16)).collect()).collect();
+        at_each.iter().for_each(|points| assert_net(points));
+        assert_net(&at_each.concat());
+    }
+
+    /// Pearson's correlation of two lists.
+    fn correlation(a: &[f64], b: &[f64]) -> f64 {
+        let n = a.len() as f64;
+        let mean = |v: &[f64]| v.iter().sum::<f64>() / n;
+        let (ma, mb) = (mean(a), mean(b));
+        let cov: f64 = a.iter().zip(b).map(|(x, y)| (x - ma) * (y - mb)).sum();
+        let var = |v: &[f64], m: f64| v.iter().map(|x| (x - m) * (x - m)).sum::<f64>();
+        cov / (var(a, ma) * var(b, mb)).sqrt()
+    }
+
+    #[test]
+    fn neighbours_dimensions_and_seeds_are_not_correlated() {
+        let draw = |seed, dx: u32, dy: u32, skip: usize| -> Vec<f64> {
+            (0..256 * 256)
+                .map(|i| {
+                    let mut s = Sampler::new(seed, i % 256 + dx, i / 256 + dy, 0);
+                    for _ in 0..skip {
+                        s.next_1d();
+                    }
+                    s.next_1d()
+                })
+                .collect()
+        };
+        let base = draw(0, 0, 0, 0);
+        for (name, other) in [
+            ("right", draw(0, 1, 0, 0)),
+            ("below", draw(0, 0, 1, 0)),
+            ("diagonal", draw(0, 1, 1, 0)),
+            ("seed", draw(1, 0, 0, 0)),
+            ("next dimension", draw(0, 0, 0, 1)),
+            ("pixel + seed swapped", draw(1, 1, 0, 0)),
+        ] {
+            let r = correlation(&base, &other);
+            assert!(r.abs() < 0.01, "{name}: r = {r}");
+        }
+    }
+
+    /// Root-mean-square error of n samples over 64 repetitions (pixels).
+    fn error(n: u32, f: impl Fn(DVec2) -> f64, exact: f64) -> f64 {
+        let reps = 64;
+        let square = |r: u32| {
+            let sum: f64 = (0..n).map(|s| f(Sampler::new(11, r, 0, s).next_2d())).sum();
+            (sum / f64::from(n) - exact) * (sum / f64::from(n) - exact)
+        };
+        ((0..reps).map(square).sum::<f64>() / f64::from(reps)).sqrt()
+    }
+
+    #[test]
+    fn smooth_integrals_converge_faster_than_random() {
+        let f = |p: DVec2| p.x * p.x * p.y + (p.x - p.y) * (p.x - p.y);
+        let exact = 1.0 / 6.0 + 1.0 / 6.0;
+        let slope = (error(4096, f, exact) / error(16, f, exact)).log2() / 8.0;
+        assert!(slope < -1.3, "slope {slope}");
+    }
+
+    #[test]
+    fn numbers_lie_strictly_between_0_and_1() {
+        assert!(unit(0) > 0.0 && unit(u32::MAX) < 1.0);
+    }
+}

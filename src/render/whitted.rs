@@ -1,1 +1,220 @@
-//! (whitted)
+//! Recursive ray tracing after Whitted (1980), and ray casting, which is the same without second rays.
+//!
+//! At each hit the lights are asked directly; mirrors and glass are followed; nothing else is. Light between diffuse surfaces
+//! is left to other tracers, and `ambient` may stand for it. The tree of rays is walked with a list of what is still to do,
+//! so that no depth can exhaust the stack.
+//!
+//! What each does with the meaning of a material:
+//! * A perfect mirror and smooth glass take one ray each. A rough one takes one ray per camera sample, off a facet chosen by
+//!   GGX; light from point, spot and sun lights, which that ray cannot meet, is evaluated by the lobe instead.
+//! * Shadow rays go straight through what transmits and carry off what it takes: its colour, its mirror share, its
+//!   absorption. They do not bend.
+//! * An area light or a sky gets its `samples` at the first surface seen, and one at surfaces seen in mirrors and glass.
+
+mod local;
+
+use super::Tracer;
+use super::sampler::Sampler;
+use super::settings::ResolvedSettings;
+use crate::math::elementary::exp;
+use crate::scene::{Material, Rgb, Texture};
+use crate::world::bsdf::{Bsdf, Scattered};
+use crate::world::light::Lights;
+use crate::world::texture::Sampled;
+use crate::world::{Hit, Ray, RayKind, World};
+use std::cell::Cell;
+
+/// The tracers `whitted` and `raycast`.
+pub struct Whitted {
+    lights: Lights,
+    depth: u32,
+    background: Option<Rgb>,
+    second_rays: bool,
+    /// True where some material lets shadow rays through in part.
+    clear_shadows: bool,
+}
+
+impl Whitted {
+    /// Mirrors, glass and shadows, to the settings' depth.
+    pub fn new(world: &World, settings: &ResolvedSettings) -> Whitted {
+        Whitted {
+            lights: Lights::new(world),
+            depth: settings.depth,
+            background: settings.background,
+            second_rays: true,
+            clear_shadows: world.materials().iter().any(|m| lets_light_through(m)),
+        }
+    }
+
+    /// No second ray of any kind: local shading without shadows; mirrors and glass stay black.
+    pub fn raycast(world: &World, settings: &ResolvedSettings) -> Whitted {
+        Whitted { second_rays: false, ..Whitted::new(world, settings) }
+    }
+
+    /// Radiance from where nothing is: the background where it is given, else the sky.
+    fn beyond(&self, ray: &Ray) -> Rgb {
+        self.background.or_else(|| self.lights.sky(ray.direction)).unwrap_or(Rgb::ZERO)
+    }
+}
+
+fn lets_light_through(material: &Material) -> bool {
+    let is = |t: &Texture, c: Rgb| matches!(t, Texture::Constant(d) if *d == c);
+    material.layers.as_deref().is_some_and(|l| !is(&l.transmit, Rgb::ZERO) || !is(&l.opacity, Rgb::ONE))
+}
+
+/// A ray still to be followed.
+#[derive(Clone, Copy)]
+struct Task {
+    ray: Ray,
+    /// What its radiance is multiplied by in the sample.
+    weight: Rgb,
+    /// Segments from the camera, this one counted.
+    segment: u32,
+    inside: Inside,
+}
+
+thread_local! {
+    /// The list of what is still to do, kept between samples so that tracing does not allocate.
+    static TASKS: Cell<Vec<Task>> = const { Cell::new(Vec::new()) };
+}
+
+/// A branch that can change its sample by less than this share of the light it meets is not followed: it bounds the number
+/// of rays between many glass surfaces, at an error far below what a 32-bit picture stores.
+const LEAST_WEIGHT: f64 = 1.0 / (1u64 << 30) as f64;
+
+impl Tracer for Whitted {
+    fn radiance(&self, world: &World, ray: Ray, sampler: &mut Sampler) -> Rgb {
+        sampler.rays.camera += 1;
+        let mut tasks = TASKS.take();
+        tasks.clear();
+        tasks.push(Task { ray, weight: Rgb::ONE, segment: 1, inside: Inside::NOTHING });
+        let mut sum = Rgb::ZERO;
+        while let Some(task) = tasks.pop() {
+            match self.follow(world, &task, &mut tasks, sampler) {
+                Ok(radiance) => sum += radiance,
+                Err(fault) => {
+                    sampler.undefined = Some(fault);
+                    break;
+                }
+            }
+        }
+        TASKS.set(tasks);
+        sum
+    }
+}
+
+impl Whitted {
+    /// What the end of one ray adds to the sample; the rays that go on from there are added to the tasks.
+    fn follow(
+        &self,
+        world: &World,
+        task: &Task,
+        tasks: &mut Vec<Task>,
+        sampler: &mut Sampler,
+    ) -> Sampled<Rgb> {
+        let Some(hit) = world.closest(&task.ray) else {
+            return Ok(task.weight * task.inside.kept(f64::INFINITY) * self.beyond(&task.ray));
+        };
+        let bsdf = Bsdf::at(&hit, -task.ray.direction)?;
+        let weight = task.weight * task.inside.or_in(&bsdf).kept(hit.t);
+        if bsdf.opacity < 1.0 {
+            let past = Task {
+                ray: hit.spawn(task.ray.direction, task.ray.kind),
+                weight: weight * (1.0 - bsdf.opacity),
+                ..*task
+            };
+            push(tasks, past);
+        }
+        let weight = weight * bsdf.opacity;
+        let mut radiance = bsdf.ambient + emitted(world, &hit, &bsdf);
+        let last = self.second_rays && task.segment >= self.depth;
+        if !last {
+            radiance += self.local(world, &hit, &bsdf, task.segment == 1, sampler)?;
+        }
+        if self.second_rays && !last {
+            self.branch(&hit, &bsdf, Task { weight, ..*task }, tasks, sampler);
+        }
+        Ok(weight * radiance)
+    }
+
+    /// The mirrored and the bent ray of a hit.
+    fn branch(&self, hit: &Hit<'_>, bsdf: &Bsdf, from: Task, tasks: &mut Vec<Task>, sampler: &mut Sampler) {
+        let next = |s: Scattered, inside| Task {
+            ray: hit.spawn(s.direction, RayKind::Indirect),
+            weight: from.weight * s.weight,
+            segment: from.segment + 1,
+            inside,
+        };
+        let u = if bsdf.is_glossy() { sampler.next_2d() } else { glam::DVec2::ZERO };
+        if let Some(bent) = bsdf.transmitted(u) {
+            sampler.rays.refracted += u64::from(push(tasks, next(bent, from.inside.across(bsdf))));
+        }
+        if let Some(mirrored) = bsdf.mirrored(u) {
+            sampler.rays.reflected += u64::from(push(tasks, next(mirrored, from.inside)));
+        }
+    }
+}
+
+/// Adds a task, if it can still matter.
+fn push(tasks: &mut Vec<Task>, task: Task) -> bool {
+    let matters = task.weight.max_element() > LEAST_WEIGHT;
+    if matters {
+        tasks.push(task);
+    }
+    matters
+}
+
+/// Radiance that the surface sends out: on its normal's side, and inward too from a closed solid.
+fn emitted(world: &World, hit: &Hit<'_>, bsdf: &Bsdf) -> Rgb {
+    if bsdf.emit == Rgb::ZERO || bsdf.outside || world.emits_inward(hit.primitive) {
+        bsdf.emit
+    } else {
+        Rgb::ZERO
+    }
+}
+
+/// The media that a ray is inside of, innermost last: only as many as fit; more deeply nested ones count as the last.
+#[derive(Clone, Copy)]
+struct Inside {
+    absorb: [Rgb; 4],
+    n: usize,
+}
+
+impl Inside {
+    const NOTHING: Inside = Inside { absorb: [Rgb::ZERO; 4], n: 0 };
+
+    /// After passing a surface, into the medium or out of it.
+    fn across(mut self, bsdf: &Bsdf) -> Inside {
+        if !bsdf.outside {
+            self.n = self.n.saturating_sub(1);
+        } else if self.n < self.absorb.len() {
+            self.absorb[self.n] = bsdf.absorb;
+            self.n += 1;
+        }
+        self
+    }
+
+    /// For a ray that meets a surface from within without having entered it: the camera stands inside.
+    fn or_in(self, bsdf: &Bsdf) -> Inside {
+        let unknown = self.n == 0 && !bsdf.outside && bsdf.is_transmissive();
+        if unknown { Inside { absorb: [bsdf.absorb; 4], n: 1 } } else { self }
+    }
+
+    /// Share of light left after a length, by Beer's law. Infinite lengths leave nothing of what is absorbed at all.
+    fn kept(&self, length: f64) -> Rgb {
+        match self.n {
+            0 => Rgb::ONE,
+            n => kept(self.absorb[n - 1], length),
+        }
+    }
+}
+
+/// exp(−absorb · length), 1 where nothing is absorbed.
+fn kept(absorb: Rgb, length: f64) -> Rgb {
+    let channel = |a: f64| if a == 0.0 { 1.0 } else { exp(-a * length) };
+    if absorb == Rgb::ZERO {
+        Rgb::ONE
+    } else {
+        Rgb::new(channel(absorb.x), channel(absorb.y), channel(absorb.z))
+    }
+}

@@ -140,6 +140,11 @@ impl World {
         None
     }
 
+    /// Whether a primitive that emits does so from both sides: one of a closed solid.
+    pub fn emits_inward(&self, primitive: PrimitiveId) -> bool {
+        self.emitter_of(primitive).is_some_and(|i| light::emits_inward(&self.emitters[i].shape))
+    }
+
     /// The box around all bounded shapes; empty for none.
     pub fn bounds(&self) -> Aabb {
         Aabb::EMPTY

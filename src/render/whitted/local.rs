@@ -1,0 +1,97 @@
+//! Light that comes to a hit straight from the lights, and what stands in its way.
+
+use super::{Whitted, kept};
+use crate::render::sampler::Sampler;
+use crate::scene::Rgb;
+use crate::world::bsdf::Bsdf;
+use crate::world::light::{Light, LightSample};
+use crate::world::texture::Sampled;
+use crate::world::{Hit, Ray, World};
+use glam::DVec2;
+
+impl Whitted {
+    /// Radiance that the surface sends on from all lights. `first`: seen by the camera itself.
+    pub(super) fn local(
+        &self,
+        world: &World,
+        hit: &Hit<'_>,
+        bsdf: &Bsdf,
+        first: bool,
+        sampler: &mut Sampler,
+    ) -> Sampled<Rgb> {
+        let mut sum = Rgb::ZERO;
+        if bsdf.has_base() || bsdf.is_glossy() {
+            for light in &self.lights.lights {
+                sum += self.from_light(world, hit, bsdf, light, first, sampler)?;
+            }
+        }
+        Ok(sum)
+    }
+
+    fn from_light(
+        &self,
+        world: &World,
+        hit: &Hit<'_>,
+        bsdf: &Bsdf,
+        light: &Light,
+        first: bool,
+        sampler: &mut Sampler,
+    ) -> Sampled<Rgb> {
+        if light.is_delta() {
+            return match light.sample(hit.point, bsdf.normal, DVec2::ZERO) {
+                Some(s) => self.arriving(world, hit, light, &s, bsdf.base(s.wi) + bsdf.gloss(s.wi), sampler),
+                None => Ok(Rgb::ZERO),
+            };
+        }
+        if !bsdf.has_base() {
+            return Ok(Rgb::ZERO);
+        }
+        let n = if first { light.samples } else { 1 };
+        let points = sampler.next_set();
+        let mut sum = Rgb::ZERO;
+        for i in 0..n {
+            if let Some(s) = light.sample(hit.point, bsdf.normal, points.point(i, n)) {
+                sum += self.arriving(world, hit, light, &s, bsdf.base(s.wi), sampler)?;
+            }
+        }
+        Ok(sum / f64::from(n))
+    }
+
+    /// A sample's light times the share that is sent on, if it arrives. No ray is cast for what would not be seen.
+    fn arriving(
+        &self,
+        world: &World,
+        hit: &Hit<'_>,
+        light: &Light,
+        sample: &LightSample,
+        share: Rgb,
+        sampler: &mut Sampler,
+    ) -> Sampled<Rgb> {
+        let sent = share * sample.weight;
+        if sent == Rgb::ZERO || !light.shadow || !self.second_rays {
+            return Ok(sent);
+        }
+        let ray = sample.shadow_ray(hit);
+        if self.clear_shadows {
+            return Ok(sent * passed(world, ray, sampler)?);
+        }
+        sampler.rays.shadow += 1;
+        Ok(if world.occluded(&ray) { Rgb::ZERO } else { sent })
+    }
+}
+
+/// Share of light that passes along a shadow ray, through whatever is not opaque.
+fn passed(world: &World, mut ray: Ray, sampler: &mut Sampler) -> Sampled<Rgb> {
+    let mut share = Rgb::ONE;
+    while share != Rgb::ZERO {
+        sampler.rays.shadow += 1;
+        let Some(hit) = world.closest(&ray) else { return Ok(share) };
+        let bsdf = Bsdf::at(&hit, -ray.direction)?;
+        if !bsdf.outside && bsdf.is_transmissive() {
+            share *= kept(bsdf.absorb, hit.t);
+        }
+        share *= bsdf.straight_through();
+        ray = Ray { t_max: ray.t_max - hit.t, ..hit.spawn(ray.direction, ray.kind) };
+    }
+    Ok(share)
+}

@@ -1,0 +1,297 @@
+//! A material at a point, seen from a side: plain numbers, and the share of light it sends from one direction to another.
+//! Knows nothing of lights, of shadows or of who asks.
+//!
+//! The meaning, one for all tracers: with mirror share r(θ), light is sent on by (1 − r)·base + r·mirror, where the base is
+//! diffuse ρ/π, a specular lobe and what is let through. `wo` and `wi` leave the surface. Surfaces shade on both sides.
+
+pub mod fresnel;
+pub mod lobes;
+mod normal;
+
+use super::hit::Hit;
+use super::texture::{self, Sampled, TexturePoint};
+use crate::scene::{Fresnel, Lobe, Material, Rgb};
+use fresnel::{reflect, refract};
+use glam::{DVec2, DVec3};
+use lobes::Ggx;
+use std::f64::consts::PI;
+
+/// A material at a hit, seen along `wo`.
+#[derive(Clone, Debug)]
+pub struct Bsdf {
+    /// Unit vector to where it is seen from.
+    pub wo: DVec3,
+    /// Unit geometric normal on the side of `wo`.
+    pub geometric: DVec3,
+    /// Unit shading normal on the side of `wo`, and with a positive cosine to it.
+    pub normal: DVec3,
+    /// True where `wo` lies on the side that the surface's own normal leaves.
+    pub outside: bool,
+    /// Share of the surface that is there.
+    pub opacity: f64,
+    /// Radiance sent out on the normal's side.
+    pub emit: Rgb,
+    /// Radiance that raycast and whitted add.
+    pub ambient: Rgb,
+    /// Absorption per unit length inside.
+    pub absorb: Rgb,
+    /// Index inside over outside.
+    ior: f64,
+    diffuse: Rgb,
+    specular: Rgb,
+    exponent: f64,
+    lobe: Lobe,
+    transmit: Rgb,
+    roughness: f64,
+    mirror: Mirror,
+}
+
+/// How the mirror share goes with the angle.
+#[derive(Clone, Copy, Debug)]
+enum Mirror {
+    /// No mirror at all.
+    None,
+    /// The same at every angle.
+    Constant(Rgb),
+    /// From a share or colour at normal incidence, by Schlick.
+    Schlick(Rgb),
+    /// From a share at normal incidence, by Fresnel's equations.
+    Exact(Rgb),
+    /// The boundary of what lets light through: silvered by a share, the rest by the law for its index.
+    Boundary(Rgb, Fresnel),
+}
+
+/// A direction in which light goes on, and the share of it that does.
+#[derive(Clone, Copy, Debug)]
+pub struct Scattered {
+    /// Unit vector away from the surface.
+    pub direction: DVec3,
+    /// Radiance that comes from there times this is sent to `wo`.
+    pub weight: Rgb,
+}
+
+impl Bsdf {
+    /// A material where a ray met it, seen along the unit vector `wo`.
+    pub fn at(hit: &Hit<'_>, wo: DVec3) -> Sampled<Bsdf> {
+        let material = hit.material;
+        let outside = wo.dot(hit.geometric_normal) >= 0.0;
+        let side = if outside { 1.0 } else { -1.0 };
+        let geometric = hit.geometric_normal * side;
+        let at = TexturePoint::from(hit);
+        let mut bsdf = Bsdf {
+            wo,
+            geometric,
+            normal: normal::facing(hit.normal * side, geometric, wo),
+            outside,
+            diffuse: texture::colour(&material.diffuse, &at)?,
+            ..Bsdf::BARE
+        };
+        if material.layers.is_some() {
+            bsdf.add_layers(material, hit, &at, side)?;
+        }
+        Ok(bsdf)
+    }
+
+    /// Reflects nothing.
+    const BARE: Bsdf = Bsdf {
+        wo: DVec3::Z,
+        geometric: DVec3::Z,
+        normal: DVec3::Z,
+        outside: true,
+        opacity: 1.0,
+        emit: Rgb::ZERO,
+        ambient: Rgb::ZERO,
+        absorb: Rgb::ZERO,
+        ior: 1.0,
+        diffuse: Rgb::ZERO,
+        specular: Rgb::ZERO,
+        exponent: 1.0,
+        lobe: Lobe::Blinn,
+        transmit: Rgb::ZERO,
+        roughness: 0.0,
+        mirror: Mirror::None,
+    };
+
+    fn add_layers(
+        &mut self,
+        material: &Material,
+        hit: &Hit<'_>,
+        at: &TexturePoint,
+        side: f64,
+    ) -> Sampled<()> {
+        let layers = material.layers();
+        let colour = |t| texture::colour(t, at);
+        let number = |t| texture::number(t, at);
+        self.opacity = texture::opacity(&layers.opacity, at)?;
+        self.emit = colour(&layers.emit)?;
+        self.ambient = colour(&layers.ambient)?;
+        self.specular = colour(&layers.specular)?;
+        if self.specular != Rgb::ZERO {
+            self.exponent = number(&layers.exponent)?;
+            self.lobe = layers.lobe;
+        }
+        self.transmit = colour(&layers.transmit)?;
+        if self.transmit != Rgb::ZERO {
+            self.ior = number(&layers.ior)?;
+            self.absorb = colour(&layers.absorb)?;
+        }
+        self.mirror = mirror(colour(&layers.metal)?, self.transmit, colour(&layers.reflect)?, layers.fresnel);
+        if !matches!(self.mirror, Mirror::None) {
+            self.roughness = number(&layers.roughness)?.max(0.0);
+        }
+        if let Some(n) = normal::mapped(hit, layers, at)? {
+            self.normal = normal::facing(n * side, self.geometric, self.wo);
+        }
+        Ok(())
+    }
+
+    /// True where light that comes from somewhere in particular is sent on: where lights need to be asked at all.
+    pub fn has_base(&self) -> bool {
+        self.diffuse != Rgb::ZERO || self.specular != Rgb::ZERO
+    }
+
+    /// True where the mirror is a lobe with a width.
+    pub fn is_glossy(&self) -> bool {
+        self.roughness > 0.0 && !matches!(self.mirror, Mirror::None)
+    }
+
+    /// The base times the cosine of `wi` to the normal: what is sent on of the irradiance from `wi`, per steradian. 0 from
+    /// below either normal; what the difference of the two would cut off at once fades out (Chiang, Li & Burley, *Taming the
+    /// Shadow Terminator*, 2019).
+    pub fn base(&self, wi: DVec3) -> Rgb {
+        let lit = self.lit(wi);
+        if lit <= 0.0 {
+            return Rgb::ZERO;
+        }
+        let mut sent = self.diffuse / PI;
+        if self.specular != Rgb::ZERO {
+            sent += self.specular * lobes::specular(self.lobe, self.exponent, self.normal, self.wo, wi);
+        }
+        (Rgb::ONE - self.mirror_share(self.wo.dot(self.normal))) * sent * lit
+    }
+
+    /// The mirror as a lobe, times the cosine; 0 where it is smooth and so has no width.
+    pub fn gloss(&self, wi: DVec3) -> Rgb {
+        let lit = self.lit(wi);
+        if lit <= 0.0 || !self.is_glossy() {
+            return Rgb::ZERO;
+        }
+        let half = (self.wo + wi).normalize_or(self.normal);
+        self.mirror_share(self.wo.dot(half)) * (self.ggx().lobe(self.wo, wi) * lit)
+    }
+
+    /// The mirrored direction and its share. A rough mirror's is chosen by u, in (0, 1)².
+    pub fn mirrored(&self, u: DVec2) -> Option<Scattered> {
+        if matches!(self.mirror, Mirror::None) {
+            return None;
+        }
+        let (facet, rough) = self.facet(u);
+        let weight = self.mirror_share(self.wo.dot(facet).clamp(0.0, 1.0));
+        let direction = normal::onto_side(reflect(self.wo, facet), self.geometric);
+        let carried = if rough {
+            self.ggx().carried(self.wo.dot(self.normal), direction.dot(self.normal))
+        } else {
+            1.0
+        };
+        (weight != Rgb::ZERO && carried > 0.0).then(|| Scattered { direction, weight: weight * carried })
+    }
+
+    /// The direction beyond the surface and the share let through. None where nothing is, or all is reflected.
+    pub fn transmitted(&self, u: DVec2) -> Option<Scattered> {
+        if self.transmit == Rgb::ZERO {
+            return None;
+        }
+        let (facet, rough) = self.facet(u);
+        let bent = refract(self.wo, facet, self.eta())?;
+        let share = Rgb::ONE - self.mirror_share(self.wo.dot(facet).clamp(0.0, 1.0));
+        let direction = normal::onto_side(bent, -self.geometric);
+        let carried = if rough {
+            self.ggx().carried(self.wo.dot(self.normal), -direction.dot(self.normal))
+        } else {
+            1.0
+        };
+        let weight = self.transmit * share * carried;
+        (weight != Rgb::ZERO).then_some(Scattered { direction, weight })
+    }
+
+    /// Share of light that goes straight on, as if the surface did not bend it: what a shadow ray keeps.
+    pub fn straight_through(&self) -> Rgb {
+        let beyond = if self.transmit == Rgb::ZERO {
+            Rgb::ZERO
+        } else {
+            (Rgb::ONE - self.mirror_share(self.wo.dot(self.normal))) * self.transmit
+        };
+        Rgb::splat(1.0 - self.opacity) + self.opacity * beyond
+    }
+
+    /// True where light is let through the surface, and not only past it.
+    pub fn is_transmissive(&self) -> bool {
+        self.transmit != Rgb::ZERO
+    }
+
+    /// Index beyond the surface over the index on the side of `wo`.
+    fn eta(&self) -> f64 {
+        if self.outside { self.ior } else { 1.0 / self.ior }
+    }
+
+    fn ggx(&self) -> Ggx {
+        Ggx { n: self.normal, alpha: self.roughness }
+    }
+
+    /// The normal that mirrors or bends: the shading normal, or that of a facet seen from `wo`.
+    fn facet(&self, u: DVec2) -> (DVec3, bool) {
+        if self.roughness > 0.0 {
+            (self.ggx().visible_normal(self.wo, u), true)
+        } else {
+            (self.normal, false)
+        }
+    }
+
+    /// The cosine of `wi` to the shading normal, faded out toward the geometric horizon where the two normals differ.
+    fn lit(&self, wi: DVec3) -> f64 {
+        let (above, cosine) = (wi.dot(self.geometric), wi.dot(self.normal));
+        if !(above > 0.0 && cosine > 0.0) {
+            return 0.0;
+        }
+        if self.normal == self.geometric {
+            return cosine;
+        }
+        let g = (above / (cosine * self.normal.dot(self.geometric))).clamp(0.0, 1.0);
+        cosine * (g * (1.0 + g * (1.0 - g)))
+    }
+
+    /// r(θ) for a cosine in 0 … 1.
+    fn mirror_share(&self, cosine: f64) -> Rgb {
+        let c = cosine.clamp(0.0, 1.0);
+        match self.mirror {
+            Mirror::None => Rgb::ZERO,
+            Mirror::Constant(r) => r,
+            Mirror::Schlick(r0) => fresnel::schlick(r0, c),
+            Mirror::Exact(r0) => fresnel::dielectric_of(r0, c),
+            Mirror::Boundary(silver, law) => {
+                let eta = self.eta();
+                let share = match law {
+                    Fresnel::Exact => fresnel::dielectric(c, eta),
+                    Fresnel::Schlick => fresnel::dielectric_schlick(c, eta),
+                    Fresnel::None if fresnel::cos_beyond(c, eta).is_none() => 1.0,
+                    Fresnel::None => 0.0,
+                };
+                silver + (Rgb::ONE - silver) * share
+            }
+        }
+    }
+}
+
+fn mirror(metal: Rgb, transmit: Rgb, reflect: Rgb, law: Fresnel) -> Mirror {
+    match law {
+        _ if metal != Rgb::ZERO => Mirror::Schlick(metal),
+        _ if transmit != Rgb::ZERO => Mirror::Boundary(reflect, law),
+        _ if reflect == Rgb::ZERO => Mirror::None,
+        Fresnel::None => Mirror::Constant(reflect),
+        Fresnel::Schlick => Mirror::Schlick(reflect),
+        Fresnel::Exact => Mirror::Exact(reflect),
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,252 @@
+//! Lights made ready to be asked: from this point, which way does light come, and how much? Knows nothing of materials that
+//! reflect, of shadows or of tracers; a sample says where a shadow ray must end and leaves the casting to others.
+//!
+//! The estimate is always the product of visibility, geometry and radiance, sample by sample: a tracer multiplies
+//! [`LightSample::weight`] by BSDF, cosine and visibility and averages.
+
+mod pieces;
+mod surface;
+
+use super::hit::{Hit, SurfacePoint};
+use super::{Emitter, PlacedLight, Ray, RayKind, World};
+use crate::math::elementary::{sin_cos, sin_cos_degrees};
+use crate::scene::{LightSource, Rgb, Sky};
+use glam::{DVec2, DVec3};
+use std::f64::consts::{PI, TAU};
+pub use surface::{AreaLight, emits_inward};
+
+/// All lights of a world, ready.
+#[derive(Debug, Default)]
+pub struct Lights {
+    /// Point, spot, sun and sky lights in the order of the scene, then the surfaces that emit.
+    pub lights: Vec<Light>,
+    /// Radiance of all skies together; none where there is no sky.
+    sky: Option<Rgb>,
+}
+
+/// One light.
+#[derive(Debug)]
+pub struct Light {
+    source: Source,
+    /// `a r² + b r + c` in place of r².
+    falloff: Option<[f64; 3]>,
+    /// Whether it casts shadows.
+    pub shadow: bool,
+    /// How many samples whitted takes at the first hit: 1 for lights without extent.
+    pub samples: u32,
+}
+
+/// The forms of a light, in world space.
+#[derive(Debug)]
+enum Source {
+    Point { position: DVec3, intensity: Rgb },
+    Spot { position: DVec3, direction: DVec3, cosines: [f64; 2], intensity: Rgb },
+    Sun { toward: DVec3, irradiance: Rgb },
+    Sky { radiance: Rgb },
+    Area(Box<AreaLight>),
+}
+
+/// Light that may arrive at a point, if nothing stands between.
+#[derive(Clone, Copy, Debug)]
+pub struct LightSample {
+    /// Unit vector toward the light.
+    pub wi: DVec3,
+    /// Radiance divided by the density of choosing `wi`; for a light without extent, the irradiance on a surface that faces
+    /// it. Times BSDF, cosine and visibility it is the light sent on.
+    pub weight: Rgb,
+    /// Density per solid angle with which `wi` was chosen; none for a light without extent, which chance cannot find.
+    pub pdf: Option<f64>,
+    /// Where it comes from.
+    pub end: LightEnd,
+}
+
+/// Where a shadow ray ends.
+#[derive(Clone, Copy, Debug)]
+pub enum LightEnd {
+    /// A point in space.
+    Point(DVec3),
+    /// A point of a surface that emits.
+    Surface(SurfacePoint),
+    /// Beyond everything.
+    Infinity,
+}
+
+impl LightSample {
+    /// The ray from a surface that nothing may meet if the light is to arrive.
+    pub fn shadow_ray(&self, hit: &Hit<'_>) -> Ray {
+        match &self.end {
+            LightEnd::Point(p) => hit.spawn_to(*p),
+            LightEnd::Surface(p) => hit.spawn_to_surface(p),
+            LightEnd::Infinity => hit.spawn(self.wi, RayKind::Shadow),
+        }
+    }
+}
+
+impl Lights {
+    /// The lights of a world.
+    pub fn new(world: &World) -> Lights {
+        let placed = world.lights.iter().filter_map(Light::placed);
+        let emitting = world.emitters.iter().filter_map(Light::emitter);
+        let skies = world.lights.iter().filter_map(|placed| match &placed.light.source {
+            LightSource::Sky(Sky::Uniform(radiance)) => Some(*radiance),
+            LightSource::Sky(Sky::Image { .. })
+            | LightSource::Point { .. }
+            | LightSource::Spot { .. }
+            | LightSource::Sun { .. }
+            | LightSource::Area { .. } => None,
+        });
+        Lights { lights: placed.chain(emitting).collect(), sky: skies.reduce(|a, b| a + b) }
+    }
+
+    /// Radiance of the sky in a direction; none where there is no sky.
+    pub fn sky(&self, direction: DVec3) -> Option<Rgb> {
+        let _ = direction;
+        self.sky
+    }
+}
+
+impl Light {
+    /// A light where it stands. None for an area light, whose object is among the world's emitters, and for a sky from a
+    /// picture, which is not built yet.
+    pub fn placed(placed: &PlacedLight) -> Option<Light> {
+        let place = &placed.world_from_local;
+        let (source, samples) = match &placed.light.source {
+            LightSource::Point { position, intensity } => {
+                (Source::Point { position: place.point(*position), intensity: *intensity }, 1)
+            }
+            LightSource::Spot { position, direction, cone, intensity } => (
+                Source::Spot {
+                    position: place.point(*position),
+                    direction: place.vector(*direction).normalize(),
+                    cosines: cone.map(|half_angle| sin_cos_degrees(half_angle).1),
+                    intensity: *intensity,
+                },
+                1,
+            ),
+            LightSource::Sun { direction, irradiance } => {
+                let toward = -place.vector(*direction).normalize();
+                (Source::Sun { toward, irradiance: *irradiance }, 1)
+            }
+            LightSource::Sky(Sky::Uniform(radiance)) => {
+                (Source::Sky { radiance: *radiance }, placed.light.samples.max(1))
+            }
+            LightSource::Sky(Sky::Image { .. }) | LightSource::Area { .. } => return None,
+        };
+        Some(Light { source, falloff: placed.light.falloff, shadow: placed.light.shadow, samples })
+    }
+
+    /// A surface that emits. None for one without area.
+    pub fn emitter(emitter: &Emitter) -> Option<Light> {
+        let area = AreaLight::new(emitter)?;
+        let light = emitter.light.as_deref();
+        Some(Light {
+            source: Source::Area(Box::new(area)),
+            falloff: light.and_then(|l| l.falloff),
+            shadow: light.is_none_or(|l| l.shadow),
+            samples: light.map_or(DEFAULT_SAMPLES, |l| l.samples).max(1),
+        })
+    }
+
+    /// True for a light that no ray meets by chance: point, spot and sun.
+    pub fn is_delta(&self) -> bool {
+        match self.source {
+            Source::Point { .. } | Source::Spot { .. } | Source::Sun { .. } => true,
+            Source::Sky { .. } | Source::Area(_) => false,
+        }
+    }
+
+    /// Light toward a point from a place of this light chosen by `u` in (0, 1)². `normal` is the unit normal of the receiving
+    /// surface on the side that is lit. None where no light can come that way.
+    pub fn sample(&self, at: DVec3, normal: DVec3, u: DVec2) -> Option<LightSample> {
+        match &self.source {
+            Source::Point { position, intensity } => self.from_point(at, *position, |_| *intensity),
+            Source::Spot { position, direction, cosines, intensity } => {
+                self.from_point(at, *position, |wi| *intensity * cone_share(-direction.dot(wi), *cosines))
+            }
+            Source::Sun { toward, irradiance } => {
+                Some(LightSample { wi: *toward, weight: *irradiance, pdf: None, end: LightEnd::Infinity })
+            }
+            Source::Sky { radiance } => Some(from_sky(*radiance, normal, u)),
+            Source::Area(area) => {
+                let (mut sample, distance) = area.sample(at, normal, u)?;
+                sample.weight *= self.falloff.map_or(1.0, |f| distance * distance * attenuation(f, distance));
+                Some(sample)
+            }
+        }
+    }
+
+    fn from_point(
+        &self,
+        at: DVec3,
+        position: DVec3,
+        intensity: impl Fn(DVec3) -> Rgb,
+    ) -> Option<LightSample> {
+        let to = position - at;
+        let squared = to.length_squared();
+        let distance = squared.sqrt();
+        let wi = to / distance;
+        let weight = match self.falloff {
+            None => intensity(wi) / squared,
+            Some(falloff) => intensity(wi) * attenuation(falloff, distance),
+        };
+        let useful = wi.is_finite() && weight != Rgb::ZERO;
+        useful.then_some(LightSample { wi, weight, pdf: None, end: LightEnd::Point(position) })
+    }
+}
+
+/// Samples that whitted takes of an emitting surface that no `light` block speaks of.
+const DEFAULT_SAMPLES: u32 = 16;
+
+/// 1/(a r² + b r + c).
+fn attenuation([a, b, c]: [f64; 3], r: f64) -> f64 {
+    1.0 / ((a * r + b) * r + c)
+}
+
+/// Full inside the inner cone, nothing outside the outer, a smooth step in the cosine between.
+fn cone_share(cosine: f64, [inner, outer]: [f64; 2]) -> f64 {
+    if cosine >= inner {
+        1.0
+    } else if cosine <= outer {
+        0.0
+    } else {
+        let x = (cosine - outer) / (inner - outer);
+        x * x * (3.0 - 2.0 * x)
+    }
+}
+
+/// A uniform sky by the cosine law.
+fn from_sky(radiance: Rgb, normal: DVec3, u: DVec2) -> LightSample {
+    let local = cosine_hemisphere(u);
+    let pdf = local.z / PI;
+    LightSample {
+        wi: to_frame(normal, local),
+        weight: radiance / pdf,
+        pdf: Some(pdf),
+        end: LightEnd::Infinity,
+    }
+}
+
+/// A unit vector about z with density cos θ/π per solid angle. u in (0, 1)².
+pub fn cosine_hemisphere(u: DVec2) -> DVec3 {
+    let (s, c) = sin_cos(TAU * u.y);
+    let r = u.x.sqrt();
+    DVec3::new(r * c, r * s, (1.0 - u.x).sqrt())
+}
+
+/// Two unit vectors that make a right-handed frame with the unit vector n. Duff et al., *Building an Orthonormal Basis,
+/// Revisited* (JCGT 6-1, 2017).
+pub fn frame(n: DVec3) -> (DVec3, DVec3) {
+    let sign = 1.0f64.copysign(n.z);
+    let a = -1.0 / (sign + n.z);
+    let b = n.x * n.y * a;
+    (DVec3::new(1.0 + sign * n.x * n.x * a, sign * b, -sign * n.x), DVec3::new(b, sign + n.y * n.y * a, -n.y))
+}
+
+/// A vector given about z, about n instead.
+pub fn to_frame(n: DVec3, v: DVec3) -> DVec3 {
+    let (s, t) = frame(n);
+    s * v.x + t * v.y + n * v.z
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,286 @@
+//! Surfaces that emit, as lights: a sphere by the solid angle it fills, everything else by area.
+//!
+//! A flat surface and a mesh emit from the side that their normal leaves. A closed solid emits from both, so that a point
+//! inside a glowing sphere is lit.
+
+use super::pieces::{Curved, Piece, PiecePoint};
+use super::{LightEnd, LightSample, SurfacePoint, cosine_hemisphere, frame, to_frame};
+use crate::geometry::mesh::Mesh;
+use crate::math::Affine;
+use crate::math::elementary::sin_cos;
+use crate::math::error::gamma;
+use crate::scene::{Cone, Rgb, Texture};
+use crate::world::emitter::{Emitter, EmitterShape};
+use crate::world::texture::{self, TexturePoint};
+use glam::{DMat3, DVec2, DVec3};
+use std::f64::consts::{PI, TAU};
+
+/// A surface that emits.
+#[derive(Debug)]
+pub struct AreaLight {
+    form: Form,
+    emission: Texture,
+    local_from_world: Affine,
+}
+
+#[derive(Debug)]
+enum Form {
+    /// A sphere that is one in the world.
+    Sphere { center: DVec3, radius: f64 },
+    /// Pieces, the sums of their weights up to each (the last is the total), and how to tell inside from outside.
+    Pieces { pieces: Vec<Piece>, sums: Vec<f64>, solid: Option<Solid> },
+}
+
+/// A closed surface, by its inside in its own space.
+#[derive(Clone, Debug)]
+enum Solid {
+    Sphere { center: DVec3, radius: f64 },
+    Box(DVec3, DVec3),
+    Cone(Cone),
+    Torus(crate::scene::Torus),
+}
+
+impl AreaLight {
+    /// An emitter as a light. None where it has no area or emits nothing anywhere.
+    pub fn new(emitter: &Emitter) -> Option<AreaLight> {
+        let emission = emitter.material.layers().emit.clone();
+        if matches!(emission, Texture::Constant(c) if c == Rgb::ZERO) {
+            return None;
+        }
+        let form = form_of(emitter)?;
+        Some(AreaLight { form, emission, local_from_world: emitter.world_from_local.inverse() })
+    }
+
+    /// Light toward a point from a point of the surface chosen by u, and the distance between them. `normal` is the
+    /// receiver's, on the side that is lit.
+    pub(super) fn sample(&self, at: DVec3, normal: DVec3, u: DVec2) -> Option<(LightSample, f64)> {
+        match &self.form {
+            Form::Sphere { center, radius } => self.from_sphere(at, normal, *center, *radius, u),
+            Form::Pieces { pieces, sums, solid } => {
+                let (piece, share, u) = choose(pieces, sums, u);
+                let inside = solid.as_ref().is_some_and(|s| s.contains(self.local_from_world.point(at)));
+                self.from_piece(at, piece.point(u), share, inside)
+            }
+        }
+    }
+
+    fn from_piece(
+        &self,
+        at: DVec3,
+        chosen: PiecePoint,
+        share: f64,
+        inside: bool,
+    ) -> Option<(LightSample, f64)> {
+        let to = chosen.at.point - at;
+        let squared = to.length_squared();
+        let distance = squared.sqrt();
+        let wi = to / distance;
+        let facing = chosen.at.normal.dot(wi);
+        let cosine = if inside { facing } else { -facing };
+        if !(cosine > 0.0 && wi.is_finite()) {
+            return None;
+        }
+        let pdf = share * squared / (cosine * chosen.area);
+        let emitted = self.emitted(&chosen.at, chosen.uv, distance);
+        let weight = emitted / pdf;
+        let end = LightEnd::Surface(chosen.at);
+        weight.is_finite().then_some((LightSample { wi, weight, pdf: Some(pdf), end }, distance))
+    }
+
+    /// From outside by the solid angle that the sphere fills, written so that it keeps its digits however small the sphere
+    /// (Pharr, Jakob & Humphreys §6.2.4); from inside, where every direction ends on it, by the cosine law.
+    fn from_sphere(
+        &self,
+        at: DVec3,
+        normal: DVec3,
+        center: DVec3,
+        radius: f64,
+        u: DVec2,
+    ) -> Option<(LightSample, f64)> {
+        let to = center - at;
+        let squared = to.length_squared();
+        let sin2 = radius * radius / squared;
+        let (wi, pdf, distance) = if sin2 < 1.0 {
+            let gap = sin2 / (1.0 + (1.0 - sin2).sqrt()); // 1 − cos of the angle that the sphere fills
+            let x = gap * u.x; // 1 − cos of the angle from the axis
+            let (s, c) = sin_cos(TAU * u.y);
+            let sine2 = x * (2.0 - x);
+            let r = sine2.sqrt();
+            let away = squared.sqrt();
+            let wi = to_frame(to / away, DVec3::new(r * c, r * s, 1.0 - x));
+            let half_chord = (radius * radius - squared * sine2).max(0.0).sqrt();
+            (wi, 1.0 / (TAU * gap), away * (1.0 - x) - half_chord)
+        } else {
+            let local = cosine_hemisphere(u);
+            let wi = to_frame(normal, local);
+            let b = wi.dot(to);
+            let half_chord = (b * b + (radius * radius - squared)).max(0.0).sqrt();
+            (wi, local.z / PI, b + half_chord)
+        };
+        let n = (at + wi * distance - center).normalize_or(-wi);
+        let error = (center.abs() + DVec3::splat(radius)) * gamma(12);
+        let point = SurfacePoint { point: center + n * radius, error, normal: n };
+        let weight = self.emitted(&point, sphere_uv(n), distance) / pdf;
+        let end = LightEnd::Surface(point);
+        weight.is_finite().then_some((LightSample { wi, weight, pdf: Some(pdf), end }, distance))
+    }
+
+    fn emitted(&self, at: &SurfacePoint, uv: DVec2, distance: f64) -> Rgb {
+        match &self.emission {
+            Texture::Constant(radiance) => *radiance,
+            Texture::Pattern(_) => {
+                let local_point = self.local_from_world.point(at.point);
+                let (point, normal, t) = (at.point, at.normal, distance);
+                let point = TexturePoint { local_point, uv, point, normal, t };
+                texture::colour(&self.emission, &point).unwrap_or(Rgb::ZERO)
+            }
+        }
+    }
+}
+
+fn sphere_uv(n: DVec3) -> DVec2 {
+    let _ = n;
+    DVec2::ZERO
+}
+
+/// The piece that u.x falls on, the share of the choice it has, and u with the digits that the choice left.
+fn choose<'a>(pieces: &'a [Piece], sums: &[f64], u: DVec2) -> (&'a Piece, f64, DVec2) {
+    let total = sums[sums.len() - 1];
+    let at = u.x * total;
+    let i = sums.partition_point(|s| *s <= at).min(pieces.len() - 1);
+    let before = if i == 0 { 0.0 } else { sums[i - 1] };
+    let weight = sums[i] - before;
+    let rest = ((at - before) / weight).clamp(0.0, 1.0);
+    (&pieces[i], weight / total, DVec2::new(rest, u.y))
+}
+
+fn form_of(emitter: &Emitter) -> Option<Form> {
+    let place = &emitter.world_from_local;
+    let pieces = match &emitter.shape {
+        EmitterShape::Sphere { center, radius } => match similarity(&place.linear) {
+            Some(scale) => {
+                return Some(Form::Sphere { center: place.point(*center), radius: radius * scale });
+            }
+            None => vec![curved(Curved::Sphere { center: *center, radius: *radius }, place)],
+        },
+        EmitterShape::Disc(d) => vec![ellipse(d.center, d.normal, d.radius, place)],
+        EmitterShape::Rect(r) => vec![parallelogram(r.center, r.a, r.b, place)],
+        EmitterShape::Box(min, max) => box_faces(*min, *max, place),
+        EmitterShape::Cone(cone) => cone_pieces(cone, place),
+        EmitterShape::Torus(torus) => {
+            let (x, y) = frame(torus.axis);
+            vec![curved(Curved::Torus { torus: *torus, x, y }, place)]
+        }
+        EmitterShape::Triangle(t) => vec![triangle(t.vertices, t.uvs, place)],
+        EmitterShape::Mesh(mesh, faces) => faces.iter().map(|f| face(mesh, *f as usize, place)).collect(),
+    };
+    let solid = solid_of(&emitter.shape);
+    let mut total = 0.0;
+    let (pieces, sums): (Vec<_>, Vec<_>) = pieces
+        .into_iter()
+        .filter_map(|piece| {
+            let weight = piece.weight();
+            (weight > 0.0 && weight.is_finite()).then(|| {
+                total += weight;
+                (piece, total)
+            })
+        })
+        .unzip();
+    (!pieces.is_empty()).then_some(Form::Pieces { pieces, sums, solid })
+}
+
+/// The factor of a map that keeps angles; none for one that does not. Scales and rotations composed keep the columns' lengths
+/// equal to a few roundings and perpendicular to as many.
+fn similarity(linear: &DMat3) -> Option<f64> {
+    let [x, y, z] = [linear.x_axis, linear.y_axis, linear.z_axis];
+    let size = x.length_squared();
+    let small = size * gamma(64);
+    let near = |a: f64| a.abs() <= small;
+    let same = near(y.length_squared() - size) && near(z.length_squared() - size);
+    (same && near(x.dot(y)) && near(y.dot(z)) && near(z.dot(x))).then(|| size.sqrt())
+}
+
+fn curved(shape: Curved, place: &Affine) -> Piece {
+    Piece::Curved { shape, place: Box::new(*place) }
+}
+
+fn parallelogram(center: DVec3, a: DVec3, b: DVec3, place: &Affine) -> Piece {
+    let normal = place.normal(a.cross(b)).normalize_or_zero();
+    Piece::Parallelogram { center: place.point(center), a: place.vector(a), b: place.vector(b), normal }
+}
+
+fn ellipse(center: DVec3, normal: DVec3, radius: f64, place: &Affine) -> Piece {
+    let (a, b) = frame(normal);
+    let (a, b) = (place.vector(a * radius), place.vector(b * radius));
+    Piece::Ellipse { center: place.point(center), a, b, normal: place.normal(normal).normalize_or_zero() }
+}
+
+fn triangle([p, q, r]: [DVec3; 3], uvs: Option<[DVec2; 3]>, place: &Affine) -> Piece {
+    let normal = place.normal((q - p).cross(r - p)).normalize_or_zero();
+    let edges = [place.vector(q - p), place.vector(r - p)];
+    Piece::Triangle { corner: place.point(p), edges, normal, uvs }
+}
+
+fn face(mesh: &Mesh, index: usize, place: &Affine) -> Piece {
+    let corners = mesh.triangles[index].map(|i| i as usize);
+    let uvs = (!mesh.uvs.is_empty()).then(|| corners.map(|i| mesh.uvs[i]));
+    triangle(corners.map(|i| mesh.positions[i]), uvs, place)
+}
+
+fn box_faces(min: DVec3, max: DVec3, place: &Affine) -> Vec<Piece> {
+    let (c, h) = (min + (max - min) / 2.0, (max - min) / 2.0);
+    let (x, y, z) = (DVec3::X * h.x, DVec3::Y * h.y, DVec3::Z * h.z);
+    [(x, y, z), (y, z, x), (z, x, y)]
+        .into_iter()
+        .flat_map(|(n, a, b)| [parallelogram(c + n, a, b, place), parallelogram(c - n, b, a, place)])
+        .collect()
+}
+
+fn cone_pieces(cone: &Cone, place: &Affine) -> Vec<Piece> {
+    let axis = (cone.to - cone.from).normalize_or_zero();
+    let (x, y) = frame(axis);
+    vec![
+        curved(Curved::Side { cone: *cone, x, y }, place),
+        ellipse(cone.from, -axis, cone.radii[0], place),
+        ellipse(cone.to, axis, cone.radii[1], place),
+    ]
+}
+
+fn solid_of(shape: &EmitterShape) -> Option<Solid> {
+    match shape {
+        EmitterShape::Sphere { center, radius } => Some(Solid::Sphere { center: *center, radius: *radius }),
+        EmitterShape::Box(min, max) => Some(Solid::Box(*min, *max)),
+        EmitterShape::Cone(cone) => Some(Solid::Cone(*cone)),
+        EmitterShape::Torus(torus) => Some(Solid::Torus(*torus)),
+        EmitterShape::Disc(_)
+        | EmitterShape::Rect(_)
+        | EmitterShape::Triangle(_)
+        | EmitterShape::Mesh(..) => None,
+    }
+}
+
+/// True where a surface emits from both sides: the closed solids.
+pub fn emits_inward(shape: &EmitterShape) -> bool {
+    solid_of(shape).is_some()
+}
+
+impl Solid {
+    fn contains(&self, p: DVec3) -> bool {
+        match self {
+            Solid::Sphere { center, radius } => p.distance_squared(*center) < radius * radius,
+            Solid::Box(min, max) => p.cmpgt(*min).all() && p.cmplt(*max).all(),
+            Solid::Cone(cone) => {
+                let axis = cone.to - cone.from;
+                let s = (p - cone.from).dot(axis) / axis.length_squared();
+                let r = cone.radii[0] + (cone.radii[1] - cone.radii[0]) * s;
+                (0.0..1.0).contains(&s) && (p - cone.from - axis * s).length_squared() < r * r
+            }
+            Solid::Torus(torus) => {
+                let d = p - torus.center;
+                let h = d.dot(torus.axis);
+                let ring = (d - torus.axis * h).length() - torus.radii[0];
+                ring * ring + h * h < torus.radii[1] * torus.radii[1]
+            }
+        }
+    }
+}
