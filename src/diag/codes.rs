@@ -46,6 +46,7 @@ codes! {
     ReservedName = "E0008", "a reserved word cannot be a name";
     FileTooLarge = "E0009", "a scene file is too large";
     NotUtf8 = "E0010", "a scene file is not UTF-8 text";
+    MissingComma = "E0011", "a comma may be missing in a vector";
     // 1: names
     UnknownName = "E0101", "a name is not defined";
     DuplicateName = "E0102", "a name is defined twice in one scope";
