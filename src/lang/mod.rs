@@ -7,6 +7,7 @@
 
 pub mod builtins;
 pub mod check;
+pub mod coerce;
 pub mod compile;
 pub mod eval;
 pub mod kinds;

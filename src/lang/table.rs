@@ -3,10 +3,12 @@
 
 use super::value::{Given, Value};
 use crate::diag::{Diagnostic, Span};
+use crate::math::field::CallN;
 use crate::scene::assets::Loader;
 use crate::scene::{Node, SampleInput, SampledFunction};
 use crate::syntax::ast::Name;
 use std::path::PathBuf;
+use std::rc::Rc;
 use std::sync::Arc;
 
 /// Proof that an error was reported; whoever gets it stays silent.
@@ -70,6 +72,24 @@ pub struct Kind {
     pub build: Option<Build>,
 }
 
+impl Kind {
+    /// Its own properties, then those that its role adds: what every object takes, and the transforms of a light.
+    pub fn properties(&self) -> impl Iterator<Item = &'static Property> {
+        self.own.iter().chain(super::kinds::common::of_role(self.role))
+    }
+
+    /// The property of this name.
+    pub fn property(&self, name: &str) -> Option<&'static Property> {
+        self.properties().find(|p| p.name == name)
+    }
+}
+
+impl std::fmt::Debug for Kind {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "kind {}", self.name)
+    }
+}
+
 /// Makes a block's value from what stood between its braces, all checked against the table.
 pub type Build = fn(&mut dyn Context, Block) -> Outcome;
 
@@ -106,6 +126,48 @@ pub struct Property {
     pub doc: &'static str,
 }
 
+impl Property {
+    /// A property that may be given once, with these alternatives; see the fields.
+    pub const fn new(
+        name: &'static str,
+        takes: &'static [&'static [Type]],
+        default: &'static str,
+        doc: &'static str,
+    ) -> Property {
+        Property { name, takes, many: false, required: false, repeats: false, default, doc }
+    }
+
+    /// The same, but the block cannot be without it.
+    pub const fn required(self) -> Property {
+        Property { required: true, ..self }
+    }
+
+    /// The same, but it takes any number of values, or one list of them.
+    pub const fn many(self) -> Property {
+        Property { many: true, ..self }
+    }
+
+    /// The same, but it may be given again and again.
+    pub const fn repeats(self) -> Property {
+        Property { repeats: true, ..self }
+    }
+
+    /// Whether it stands without a value: `closed`.
+    pub fn is_flag(&self) -> bool {
+        self.takes.iter().any(|row| row.is_empty())
+    }
+
+    /// The words that it takes at any of its places, written bare (`lobe phong`, `smooth on`).
+    pub fn words(&self) -> impl Iterator<Item = &'static str> {
+        self.takes.iter().flat_map(|row| row.iter()).flat_map(|kind| kind.words().iter().copied())
+    }
+
+    /// Whether it takes a name of the author's own, written bare: a joint.
+    pub fn takes_label(&self) -> bool {
+        self.takes.iter().any(|row| row.contains(&Type::Label))
+    }
+}
+
 /// What a property or parameter takes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Type {
@@ -137,8 +199,15 @@ pub enum Type {
     Direction,
     /// Linear RGB or a grey.
     Colour,
-    /// A colour, a number, a pattern, or a function of the point, of (u, v).
+    /// A colour, a number, a pattern, or a function of the point, of (u, v). Channels of at least 0.
     Texture,
+    /// A number in closed bounds that may vary over a surface: a number, a pattern, or a function to a number.
+    NumberTexture {
+        /// Least.
+        min: f64,
+        /// Most.
+        max: f64,
+    },
     /// One of these words, written bare.
     Word(&'static [&'static str]),
     /// A name of the author's own, written bare: a joint.
@@ -164,6 +233,15 @@ impl Type {
     pub const NUMBER: Type = Type::Number { min: f64::MIN, max: f64::MAX };
     /// A finite number of at least 0.
     pub const NON_NEGATIVE: Type = Type::Number { min: 0.0, max: f64::MAX };
+
+    /// The words it takes, written bare.
+    pub fn words(self) -> &'static [&'static str] {
+        match self {
+            Type::Word(words) => words,
+            Type::Bool => &["on", "off"],
+            _ => &[],
+        }
+    }
 }
 
 /// A block's content, given to its [`Build`].
@@ -180,6 +258,8 @@ pub struct Block {
     pub given: Vec<Given>,
     /// Objects and lights that its items placed.
     pub children: Vec<Node>,
+    /// Properties that were written, but whose values failed and were reported: they are not missing, and nothing is built.
+    pub poisoned: Vec<(Rc<str>, Span)>,
 }
 
 /// A builtin function.
@@ -192,10 +272,35 @@ pub struct Builtin {
     pub variadic: bool,
     /// What it gives, in one line.
     pub doc: &'static str,
+    /// Where it is defined, and a thing to try elsewhere; empty where it is defined everywhere.
+    pub domain: (&'static str, &'static str),
     /// An expression that shows it and what it gives: ("sqrt(2)^2", "2.0000000000000004"); checked by a test.
     pub example: (&'static str, &'static str),
     /// How.
     pub body: BuiltinBody,
+}
+
+impl Builtin {
+    /// A function that is defined everywhere, of a fixed number of arguments.
+    pub const fn new(
+        name: &'static str,
+        parameters: &'static [Parameter],
+        body: BuiltinBody,
+        doc: &'static str,
+        example: (&'static str, &'static str),
+    ) -> Builtin {
+        Builtin { name, parameters, variadic: false, doc, domain: ("", ""), example, body }
+    }
+
+    /// The same, but it takes further arguments.
+    pub const fn variadic(self) -> Builtin {
+        Builtin { variadic: true, ..self }
+    }
+
+    /// The same, but it is defined only where the first text says; the second is a thing to try elsewhere.
+    pub const fn defined(self, domain: &'static str, hint: &'static str) -> Builtin {
+        Builtin { domain: (domain, hint), ..self }
+    }
 }
 
 impl std::fmt::Debug for Builtin {
@@ -214,13 +319,35 @@ pub struct Parameter {
     pub default: Option<&'static str>,
 }
 
+/// How many components a function of numbers and vectors gives, from how many each argument has (1 to 4). None where some
+/// argument has the wrong number.
+pub type ShapeOf = fn(&[usize]) -> Option<usize>;
+
+impl Parameter {
+    /// A parameter that must be given.
+    pub const fn new(name: &'static str, takes: &'static str) -> Parameter {
+        Parameter { name, takes, default: None }
+    }
+
+    /// One that need not.
+    pub const fn or(self, default: &'static str) -> Parameter {
+        Parameter { default: Some(default), ..self }
+    }
+}
+
 /// How a builtin computes. Numeric ones are plain functions, so that loops and tapes call them without ceremony; on vectors
-/// they work component by component. A result that is not finite from finite arguments is reported by the caller.
+/// they work component by component. A result that is not finite from finite arguments is an error of the call, which
+/// [`super::builtins::undefined`] words; [`super::builtins::call`] does all of it.
 pub enum BuiltinBody {
     /// A number from a number.
     Number1(fn(f64) -> f64),
-    /// A number from two.
+    /// A number from two. A variadic one folds further arguments from the left: min(a, b, c) = min(min(a, b), c).
     Number2(fn(f64, f64) -> f64),
+    /// A number from three.
+    Number3(fn(f64, f64, f64) -> f64),
+    /// A number or vector from numbers and vectors as a whole (`dot`, `noise`): the components of all arguments, one after the
+    /// other, to those of the result. Tapes call it as it is. NaN says "undefined here".
+    Numbers(ShapeOf, CallN),
     /// Anything else; arguments are in the order of the parameters, with defaults filled in and their places beside them.
     General(fn(&mut dyn Context, &Arguments<'_>) -> Outcome),
 }

@@ -9,6 +9,7 @@ pub mod colour;
 pub mod elementary;
 pub mod error;
 pub mod field;
+pub mod noise;
 pub mod solve;
 
 pub use affine::Affine;

@@ -1,1 +1,0 @@
-//! The table of builtin functions and constants.

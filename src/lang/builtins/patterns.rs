@@ -1,0 +1,250 @@
+//! Makers of patterns: rules that give a colour or number at each point of a surface.
+
+use crate::diag::{Code, Diagnostic, Span};
+use crate::lang::check;
+use crate::lang::coerce;
+use crate::lang::table::{Arguments, Builtin, BuiltinBody::*, Context, Outcome, Parameter, Type};
+use crate::lang::value::Value;
+use crate::scene::assets::image::Picture;
+use crate::scene::{Filter, ImagePattern, Pattern, PatternKind, SampleInput, Texture, Wrap};
+use std::sync::Arc;
+
+const TWO: &[Parameter] = &[
+    Parameter::new("a", "a colour, a number, a pattern or a function"),
+    Parameter::new("b", "a colour, a number, a pattern or a function"),
+];
+
+/// The family.
+pub static ALL: &[Builtin] = &[
+    Builtin::new(
+        "checker",
+        TWO,
+        General(|ctx, arguments| {
+            let [a, b] = two(ctx, arguments)?;
+            Ok(made(PatternKind::Checker(a, b), arguments.span))
+        }),
+        "Unit cubes in alternation, one of them `a` and centred on the origin.",
+        ("checker(white, 0.3)", "a pattern"),
+    ),
+    Builtin::new(
+        "stripes",
+        TWO,
+        General(|ctx, arguments| {
+            let textures = textures(ctx, arguments, 0)?;
+            Ok(made(PatternKind::Stripes(textures), arguments.span))
+        }),
+        "Slabs one unit thick across the x axis in turn, the first centred on the origin.",
+        ("stripes(red, white, blue)", "a pattern"),
+    )
+    .variadic(),
+    Builtin::new(
+        "gradient",
+        TWO,
+        General(|ctx, arguments| {
+            let [a, b] = two(ctx, arguments)?;
+            Ok(made(PatternKind::Gradient(a, b), arguments.span))
+        }),
+        "From `a` at y = 0 to `b` at y = 1; beyond, the nearer of them.",
+        ("gradient(navy, white)", "a pattern"),
+    ),
+    Builtin::new(
+        "ramp",
+        &[
+            Parameter::new("pattern", "a number, a pattern or a function"),
+            Parameter::new("stop", "a list [t, colour]"),
+        ],
+        General(ramp),
+        "The luminance of a pattern through stops: each a list of a position and a colour, linear between, constant beyond.",
+        ("ramp(gradient(0, 1), [0, red], [0.5, white], [1, blue])", "a pattern"),
+    )
+    .variadic(),
+    Builtin::new(
+        "image",
+        &[
+            Parameter::new("file", "a text"),
+            Parameter::new("wrap", "\"repeat\", \"clamp\" or \"mirror\"").or("\"repeat\""),
+            Parameter::new("filter", "\"bilinear\" or \"nearest\"").or("\"bilinear\""),
+        ],
+        General(image),
+        "A picture by (u, v), (0, 0) at its bottom left: PNG, JPEG, TGA, BMP, HDR or EXR. Colours are decoded from sRGB; for \
+         properties that are numbers, and for normal maps, it is read as it is.",
+        ("image(\"wood.png\", wrap: \"mirror\")", ""),
+    ),
+    Builtin::new(
+        "from_hit",
+        &[Parameter::new("f", "a function of one parameter")],
+        General(from_hit),
+        "A pattern from a function of the whole hit: `h.p` the point in the object's own space, `h.n` the normal, `h.uv`, `h.t` \
+         the distance along the ray.",
+        ("from_hit(h => abs(h.n))", "a pattern"),
+    ),
+    Builtin::new(
+        "marble",
+        TWO_OR,
+        General(|ctx, arguments| super::general::not_built(ctx, arguments, "marble")),
+        "Veins. Not built yet.",
+        ("marble(white, gray)", ""),
+    ),
+    Builtin::new(
+        "wood",
+        TWO_OR,
+        General(|ctx, arguments| super::general::not_built(ctx, arguments, "wood")),
+        "Rings about the y axis. Not built yet.",
+        ("wood(maroon, olive)", ""),
+    ),
+];
+
+const TWO_OR: &[Parameter] = &[
+    Parameter::new("a", "a colour, a number, a pattern or a function").or("white"),
+    Parameter::new("b", "a colour, a number, a pattern or a function").or("gray"),
+];
+
+/// The pattern that a function's bare name stands for in a texture's place: `noise`.
+pub fn of_builtin(builtin: &Builtin, span: Option<Span>) -> Option<Pattern> {
+    let span = span.unwrap_or(Span::new(crate::diag::SourceId(0), 0, 0));
+    let kind = PatternKind::Noise(Texture::ZERO, Texture::number(1.0));
+    (builtin.name == "noise").then_some(Pattern { kind, transform: None, span })
+}
+
+fn made(kind: PatternKind, span: Span) -> Value {
+    Value::Pattern(Arc::new(Pattern { kind, transform: None, span }))
+}
+
+fn textures(ctx: &mut dyn Context, arguments: &Arguments<'_>, from: usize) -> Outcome<Vec<Texture>> {
+    let mut found = Vec::new();
+    let mut outcome = Ok(());
+    for i in from..arguments.values.len() {
+        match texture(ctx, &arguments.values[i], arguments.spans[i]) {
+            Ok(texture) => found.push(texture),
+            Err(reported) => outcome = Err(reported),
+        }
+    }
+    outcome.map(|()| found)
+}
+
+fn two(ctx: &mut dyn Context, arguments: &Arguments<'_>) -> Outcome<[Texture; 2]> {
+    let mut both = textures(ctx, arguments, 0)?.into_iter();
+    let next = |both: &mut std::vec::IntoIter<Texture>| both.next().unwrap_or(Texture::ZERO);
+    Ok([next(&mut both), next(&mut both)])
+}
+
+fn texture(ctx: &mut dyn Context, value: &Value, span: Span) -> Outcome<Texture> {
+    let mut value = value.clone();
+    check::coerce_or_report(ctx, "", &[Type::Texture], &mut value, span)?;
+    Ok(coerce::texture(&value).expect("just made one"))
+}
+
+fn ramp(ctx: &mut dyn Context, arguments: &Arguments<'_>) -> Outcome {
+    let source = texture(ctx, &arguments.values[0], arguments.spans[0])?;
+    let mut stops = Vec::new();
+    for (value, span) in arguments.values.iter().zip(arguments.spans).skip(1) {
+        stops.push(stop(ctx, value, *span)?);
+    }
+    if let Some(i) = (1..stops.len()).find(|i| stops[*i].0 < stops[i - 1].0) {
+        let said = Diagnostic::new(
+            Code::Undefined,
+            arguments.spans[i + 1],
+            format!(
+                "the stops of a `ramp` must be in order, and {} comes after {}",
+                stops[i].0,
+                stops[i - 1].0
+            ),
+        )
+        .also(arguments.spans[i], "the greater one is here")
+        .hint("sort the stops by their positions");
+        return Err(ctx.fail(said));
+    }
+    Ok(made(PatternKind::Ramp(source, stops), arguments.span))
+}
+
+fn stop(ctx: &mut dyn Context, value: &Value, span: Span) -> Outcome<(f64, Texture)> {
+    if let Value::List(list) = value
+        && let [Value::Number(t), colour] = &list[..]
+        && t.is_finite()
+    {
+        return Ok((*t, texture(ctx, colour, span)?));
+    }
+    let said = Diagnostic::new(
+        Code::TypeMismatch,
+        span,
+        format!(
+            "a stop of a `ramp` is a list of a position and a colour, and this is {}",
+            coerce::shown(value)
+        ),
+    )
+    .hint("write `[0.5, white]`");
+    Err(ctx.fail(said))
+}
+
+fn image(ctx: &mut dyn Context, arguments: &Arguments<'_>) -> Outcome {
+    let Value::Text(written) = &arguments.values[0] else {
+        let builtin = super::find("image").expect("a function of the table");
+        return Err(ctx.fail(super::wrong_argument(builtin, 0, &arguments.values[0], arguments.spans[0])));
+    };
+    let span = arguments.spans[0];
+    let wrap = choice(
+        ctx,
+        arguments,
+        1,
+        "wrap",
+        &[("repeat", Wrap::Repeat), ("clamp", Wrap::Clamp), ("mirror", Wrap::Mirror)],
+    )?;
+    let filter =
+        choice(ctx, arguments, 2, "filter", &[("bilinear", Filter::Bilinear), ("nearest", Filter::Nearest)])?;
+    let path = crate::lang::kinds::existing_file(ctx, written, span)?;
+    let pattern = ImagePattern { path, wrap, filter, colour: true, span, picture: Picture::default() };
+    Ok(made(PatternKind::Image(pattern), arguments.span))
+}
+
+/// One of some words, quoted as arguments are.
+fn choice<T: Copy>(
+    ctx: &mut dyn Context,
+    arguments: &Arguments<'_>,
+    i: usize,
+    name: &str,
+    choices: &[(&str, T)],
+) -> Outcome<T> {
+    if let Value::Text(text) = &arguments.values[i]
+        && let Some((_, chosen)) = choices.iter().find(|(word, _)| *word == &**text)
+    {
+        return Ok(*chosen);
+    }
+    let words: Vec<String> = choices.iter().map(|(word, _)| format!("\"{word}\"")).collect();
+    let said = Diagnostic::new(
+        Code::UnknownWord,
+        arguments.spans[i],
+        format!(
+            "`{name}` takes {}, not {}",
+            coerce::listed(&words, "or"),
+            super::display(&arguments.values[i])
+        ),
+    );
+    Err(ctx.fail(match &arguments.values[i] {
+        Value::Text(text) => said.did_you_mean(text, choices.iter().map(|(word, _)| *word)),
+        _ => said,
+    }))
+}
+
+fn from_hit(ctx: &mut dyn Context, arguments: &Arguments<'_>) -> Outcome {
+    let function = ctx.sampled(&arguments.values[0], SampleInput::Hit, &[1, 3], arguments.spans[0])?;
+    Ok(made(PatternKind::Function(function), arguments.span))
+}
+
+/// The same texture with its pictures read as numbers and not as colours.
+pub fn as_data(texture: Texture) -> Texture {
+    let Texture::Pattern(pattern) = texture else { return texture };
+    let kind = match pattern.kind.clone() {
+        PatternKind::Checker(a, b) => PatternKind::Checker(as_data(a), as_data(b)),
+        PatternKind::Stripes(all) => PatternKind::Stripes(all.into_iter().map(as_data).collect()),
+        PatternKind::Gradient(a, b) => PatternKind::Gradient(as_data(a), as_data(b)),
+        PatternKind::Ramp(source, stops) => {
+            PatternKind::Ramp(as_data(source), stops.into_iter().map(|(t, c)| (t, as_data(c))).collect())
+        }
+        PatternKind::Image(image) => PatternKind::Image(ImagePattern { colour: false, ..image }),
+        PatternKind::Marble(a, b) => PatternKind::Marble(as_data(a), as_data(b)),
+        PatternKind::Wood(a, b) => PatternKind::Wood(as_data(a), as_data(b)),
+        PatternKind::Noise(a, b) => PatternKind::Noise(as_data(a), as_data(b)),
+        PatternKind::Function(function) => PatternKind::Function(function),
+    };
+    Texture::Pattern(Arc::new(Pattern { kind, transform: pattern.transform.clone(), span: pattern.span }))
+}

@@ -1,0 +1,342 @@
+//! Kinds that are not built yet: their properties are checked and documented all the same.
+
+use crate::lang::table::{Kind, Property, Role, Type};
+
+const ANY: &[&[Type]] = &[&[Type::Unbuilt]];
+
+const fn unbuilt(
+    name: &'static str,
+    doc: &'static str,
+    example: &'static str,
+    role: Role,
+    own: &'static [Property],
+) -> Kind {
+    Kind { name, doc, example, role, own, children: false, open: false, build: None }
+}
+
+const fn with_children(kind: Kind) -> Kind {
+    Kind { children: true, ..kind }
+}
+
+const fn open(kind: Kind) -> Kind {
+    Kind { open: true, ..kind }
+}
+
+const CURVE_DATA: &str = "";
+
+/// A curve.
+pub static SPLINE: Kind = unbuilt(
+    "spline",
+    "A curve of numbers, 2-vectors, 3-vectors or colours. Exactly one of the data properties carries its points.",
+    "spline path { catmull_rom <0, 0, 0>, <1, 1, 0>, <2, 0, 0>, <3, 1, 0> }",
+    Role::Value,
+    &[
+        Property::new("bezier", ANY, CURVE_DATA, "cubic pieces that share end points: 3n + 1 points").many(),
+        Property::new("bspline", ANY, CURVE_DATA, "uniform cubic B-spline, at least 4 points").many(),
+        Property::new("hermite", ANY, CURVE_DATA, "cubic Hermite through the points, with `slopes`").many(),
+        Property::new("slopes", ANY, "", "derivatives at the points of `hermite`, one each").many(),
+        Property::new("catmull_rom", ANY, CURVE_DATA, "through the points, with `tension` and `alpha`")
+            .many(),
+        Property::new("natural", ANY, CURVE_DATA, "C2 through the points, with natural ends").many(),
+        Property::new("monomial", ANY, CURVE_DATA, "one piece: coefficients of 1, t, t² and t³").many(),
+        Property::new("points", ANY, CURVE_DATA, "one piece or a chain of fours in any `basis`").many(),
+        Property::new(
+            "basis",
+            &[&[Type::Word(&["bezier", "bspline", "hermite", "catmull_rom", "monomial"])], &[Type::List]],
+            "",
+            "of `points`: a name, or four 4-vectors, a row for each control point",
+        ),
+        Property::new(
+            "stride",
+            &[&[Type::Integer { min: 1 }]],
+            "1",
+            "how far `points` move on from piece to piece",
+        ),
+        Property::new("tension", &[&[Type::NUMBER]], "0", "of `catmull_rom`: 0 is loose, 1 straight"),
+        Property::new(
+            "alpha",
+            &[&[Type::Number { min: 0.0, max: 1.0 }]],
+            "0",
+            "of `catmull_rom`: 0 uniform, 0.5 centripetal, 1 chordal",
+        ),
+        Property::new(
+            "clamped",
+            &[&[], &[Type::Bool]],
+            "off",
+            "a `bspline` that reaches its first and last point",
+        ),
+        Property::new("closed", &[&[], &[Type::Bool]], "off", "the end runs into the start"),
+        Property::new(
+            "knots",
+            &[&[Type::NUMBER]],
+            "",
+            "breakpoints, strictly increasing, one more than the pieces",
+        )
+        .many(),
+    ],
+);
+
+/// A bicubic patch.
+pub static PATCH: Kind = unbuilt(
+    "patch",
+    "A bicubic surface of 16 control points, or many that share seams. A function of (u, v).",
+    "patch { file \"teapot.bpt\" }",
+    Role::Object,
+    &[
+        Property::new(
+            "bezier",
+            &[&[Type::Vector3]],
+            "",
+            "control points row by row: u picks the row, v the column",
+        )
+        .many(),
+        Property::new("bspline", &[&[Type::Vector3]], "", "control points of uniform B-splines row by row")
+            .many(),
+        Property::new("file", &[&[Type::Text]], "", "a .bpt file"),
+        Property::new(
+            "grid",
+            &[&[Type::Integer { min: 4 }, Type::Integer { min: 4 }]],
+            "4, 4",
+            "rows and columns of the control points",
+        ),
+        Property::new(
+            "tolerance",
+            &[&[Type::Positive]],
+            "",
+            "largest distance from the true surface, in scene units; by default under a quarter pixel",
+        ),
+    ],
+);
+
+/// A tube.
+pub static TUBE: Kind = unbuilt(
+    "tube",
+    "A round tube along a curve, solid.",
+    "tube { along path  radius 0.1 }",
+    Role::Object,
+    &[
+        Property::new("along", ANY, "", "the curve of its centre").required(),
+        Property::new(
+            "radius",
+            ANY,
+            "1",
+            "a number, a curve or a function of the curve's parameter, in scene units",
+        ),
+        Property::new(
+            "tolerance",
+            &[&[Type::Positive]],
+            "",
+            "largest distance from the true surface, in scene units",
+        ),
+    ],
+);
+
+/// A surface of revolution.
+pub static LATHE: Kind = unbuilt(
+    "lathe",
+    "A surface of revolution about the y axis.",
+    "lathe { profile path  angle 360 }",
+    Role::Object,
+    &[
+        Property::new("profile", ANY, "", "a curve of 2-vectors: distance from the y axis, and height")
+            .required(),
+        Property::new(
+            "angle",
+            &[&[Type::Number { min: 0.0, max: 360.0 }]],
+            "360",
+            "how far it goes round, in degrees",
+        ),
+        Property::new(
+            "tolerance",
+            &[&[Type::Positive]],
+            "",
+            "largest distance from the true surface, in scene units",
+        ),
+    ],
+);
+
+/// A prism along a path.
+pub static EXTRUDE: Kind = unbuilt(
+    "extrude",
+    "A closed outline moved along a path or a vector, solid.",
+    "extrude { outline path  along <0, 1, 0> }",
+    Role::Object,
+    &[
+        Property::new("outline", ANY, "", "a closed curve of 2-vectors").required(),
+        Property::new("along", ANY, "", "a curve or a vector").required(),
+        Property::new(
+            "tolerance",
+            &[&[Type::Positive]],
+            "",
+            "largest distance from the true surface, in scene units",
+        ),
+    ],
+);
+
+/// An implicit surface.
+pub static IMPLICIT: Kind = unbuilt(
+    "implicit",
+    "The surface where a function of the point is 0; solid where it is negative.",
+    "implicit { f p => length(p) - 1  within <-1, -1, -1>, <1, 1, 1> }",
+    Role::Object,
+    &[
+        Property::new("f", &[&[Type::Function]], "", "the function of the point, negative inside").required(),
+        Property::new(
+            "within",
+            &[&[Type::Vector3, Type::Vector3]],
+            "",
+            "least and greatest corner of the box in which it is looked for",
+        )
+        .required(),
+        Property::new(
+            "gradient",
+            &[&[Type::Positive]],
+            "",
+            "a bound on the gradient, for speed; roots are safe without",
+        ),
+    ],
+);
+
+const INVERSE: &[Property] =
+    &[Property::new("inverse", &[&[], &[Type::Bool]], "off", "the outside becomes the inside")];
+
+/// What is in any.
+pub static UNION: Kind = with_children(unbuilt(
+    "union",
+    "What is inside any of its solids.",
+    "union { sphere { radius 1 }  box { min <0, 0, 0>  max <1, 1, 1> } }",
+    Role::Object,
+    INVERSE,
+));
+
+/// What is in all.
+pub static INTERSECTION: Kind = with_children(unbuilt(
+    "intersection",
+    "What is inside all of its solids.",
+    "intersection { sphere { radius 1 }  box { min <0, 0, 0>  max <1, 1, 1> } }",
+    Role::Object,
+    INVERSE,
+));
+
+/// What is in the first alone.
+pub static DIFFERENCE: Kind = with_children(unbuilt(
+    "difference",
+    "What is inside the first of its solids and outside all others.",
+    "difference { sphere { radius 1 }  box { min <0, 0, 0>  max <1, 1, 1> } }",
+    Role::Object,
+    INVERSE,
+));
+
+/// A skinned surface.
+pub static SKIN: Kind = unbuilt(
+    "skin",
+    "A surface that bends with a skeleton.",
+    "skin { surface tube { along limb  radius 0.5 }  skeleton arm  pose touch }",
+    Role::Object,
+    &[
+        Property::new("surface", &[&[Type::Object]], "", "any mesh-like object, in rest position").required(),
+        Property::new("skeleton", ANY, "", "the skeleton that moves it").required(),
+        Property::new("pose", ANY, "", "the pose it takes; the rest pose by default"),
+        Property::new(
+            "weights",
+            &[&[Type::Word(&["rigid", "smooth"])], &[Type::List], &[Type::Function]],
+            "smooth",
+            "how much each joint moves each vertex: by rule, as a list for each vertex, or a function of the point",
+        ),
+        Property::new("influences", &[&[Type::Integer { min: 1 }]], "4", "most joints that move one vertex"),
+        Property::new(
+            "blend",
+            &[&[Type::Word(&["linear", "dual_quaternion"])]],
+            "linear",
+            "how the joints' motions are mixed",
+        ),
+        Property::new("show", &[&[Type::Word(&["bones"])]], "", "draws the skeleton"),
+    ],
+);
+
+/// A glTF model.
+pub static MODEL: Kind = unbuilt(
+    "model",
+    "A glTF 2.0 model with its hierarchy, materials, textures and skins.",
+    "model { file \"man.glb\"  at 0.6 }",
+    Role::Object,
+    &[
+        Property::new("file", &[&[Type::Text]], "", "a .glb or .gltf file").required(),
+        Property::new("clip", &[&[Type::Text]], "", "the animation; the first by default"),
+        Property::new("at", &[&[Type::NUMBER]], "0", "the moment of the clip, in seconds"),
+        Property::new("pose", ANY, "", "a pose, instead of a clip"),
+        Property::new("show", &[&[Type::Word(&["bones"])]], "", "draws the skeleton"),
+    ],
+);
+
+/// A skeleton.
+pub static SKELETON: Kind = with_children(unbuilt(
+    "skeleton",
+    "A tree of joints.",
+    "skeleton arm { joint shoulder { hinge z  joint elbow { offset <5, 0, 0>  hinge z  tip hand { offset <4, 0, 0> } } } }",
+    Role::Value,
+    &[Property::new("file", &[&[Type::Text]], "", "a .bvh file of motion capture")],
+));
+
+/// A joint.
+pub static JOINT: Kind = with_children(unbuilt(
+    "joint",
+    "A joint of a skeleton, with what it may do, its angles at rest, and the joints and tips that hang on it.",
+    "skeleton s { joint elbow { offset <5, 0, 0>  hinge z  angle 50  limits 0, 150 } }",
+    Role::Part,
+    &[
+        Property::new("offset", &[&[Type::Vector3]], "<0, 0, 0>", "from the joint above it, in scene units"),
+        Property::new("fixed", &[&[]], "", "does not move"),
+        Property::new("hinge", &[&[Type::Direction]], "", "turns about this axis"),
+        Property::new("universal", &[&[Type::Direction, Type::Direction]], "", "turns about two axes"),
+        Property::new("ball", &[&[]], "", "turns freely, by `angles`"),
+        Property::new("slide", &[&[Type::Direction]], "", "moves along this axis"),
+        Property::new("free", &[&[]], "", "moves and turns freely"),
+        Property::new("angle", &[&[Type::NUMBER]], "0", "at rest, in degrees (of a slide, in scene units)"),
+        Property::new("angles", &[&[Type::Vector3], &[Type::Vector2]], "<0, 0, 0>", "at rest, in degrees"),
+        Property::new("limits", &[&[Type::NUMBER, Type::NUMBER]], "", "least and most, in degrees"),
+    ],
+));
+
+/// The end of a chain.
+pub static TIP: Kind = unbuilt(
+    "tip",
+    "The end of a chain of joints: what reaches for things.",
+    "skeleton s { joint wrist { hinge z  tip hand { offset <1, 0, 0> } } }",
+    Role::Part,
+    &[Property::new("offset", &[&[Type::Vector3]], "<0, 0, 0>", "from its joint, in scene units")],
+);
+
+/// A pose.
+pub static POSE: Kind = open(unbuilt(
+    "pose",
+    "Angles for the joints of a skeleton, given or found by inverse kinematics. A joint's name is a property.",
+    "pose touch { of arm  reach hand, <6, 3, 0>  method dls }",
+    Role::Value,
+    &[
+        Property::new("of", ANY, "", "the skeleton").required(),
+        Property::new(
+            "reach",
+            &[&[Type::Label, Type::Vector3]],
+            "",
+            "a tip, and the point where it should be",
+        )
+        .repeats(),
+        Property::new("weight", &[&[Type::NON_NEGATIVE]], "1", "of the target before it").repeats(),
+        Property::new("toward", &[&[Type::Direction]], "", "where the tip before it should point").repeats(),
+        Property::new(
+            "method",
+            &[&[Type::Word(&["jacobian_transpose", "pseudo_inverse", "dls", "ccd"])]],
+            "dls",
+            "how the angles are found",
+        ),
+        Property::new("iterations", &[&[Type::Integer { min: 1 }]], "200", "most steps"),
+        Property::new(
+            "tolerance",
+            &[&[Type::Positive]],
+            "1e-9",
+            "distance from the target that is good enough",
+        ),
+        Property::new("at", &[&[Type::NUMBER]], "0", "the moment of motion capture, in seconds"),
+    ],
+));
