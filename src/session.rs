@@ -2,6 +2,7 @@
 //! and the loader, and turns a file into a scene with everything that is wrong with it.
 
 pub mod inspect;
+pub mod picture;
 mod whole;
 
 use crate::diag::{Diagnostic, SourceMap};
