@@ -8,6 +8,7 @@ pub mod bounds;
 pub mod colour;
 pub mod elementary;
 pub mod error;
+pub mod exact;
 pub mod field;
 pub mod noise;
 pub mod solve;

@@ -1,3 +1,4 @@
 //! Behaviour of the whole: one test binary, so that it links once. Each module is a topic.
 
+mod intersection;
 mod layers;
