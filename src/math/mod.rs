@@ -10,6 +10,7 @@ pub mod elementary;
 pub mod error;
 pub mod exact;
 pub mod field;
+pub mod interval;
 pub mod noise;
 pub mod solve;
 
