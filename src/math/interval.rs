@@ -79,7 +79,11 @@ impl Interval {
     /// What both hold.
     #[must_use]
     pub fn intersect(self, other: Interval) -> Interval {
-        Interval { lo: self.lo.max(other.lo), hi: self.hi.min(other.hi), partial: self.partial || other.partial }
+        Interval {
+            lo: self.lo.max(other.lo),
+            hi: self.hi.min(other.hi),
+            partial: self.partial || other.partial,
+        }
     }
 
     /// The same values, known to be undefined somewhere.
@@ -175,7 +179,11 @@ impl Interval {
         let mut range = Interval::outward(a.min(b), a.max(b), self.partial);
         let mut k = first;
         while k <= last {
-            if k.rem_euclid(2.0) == 0.0 { range.hi = 1.0 } else { range.lo = -1.0 }
+            if k.rem_euclid(2.0) == 0.0 {
+                range.hi = 1.0
+            } else {
+                range.lo = -1.0
+            }
             k += 1.0;
         }
         Interval { lo: range.lo.max(-1.0), hi: range.hi.min(1.0), partial: self.partial }
@@ -212,11 +220,13 @@ impl Interval {
             return Interval::EMPTY;
         }
         let base = Interval { lo: self.lo.max(0.0), ..self };
-        let corners = [(base.lo, y.lo), (base.lo, y.hi), (base.hi, y.lo), (base.hi, y.hi)].map(|(a, b)| powf(a, b));
+        let corners =
+            [(base.lo, y.lo), (base.lo, y.hi), (base.hi, y.lo), (base.hi, y.hi)].map(|(a, b)| powf(a, b));
         let lo = corners.iter().copied().fold(f64::INFINITY, f64::min);
         let hi = corners.iter().copied().fold(f64::NEG_INFINITY, f64::max);
         // Between corners the power runs through 1 where the base or the exponent changes sides.
-        let (lo, hi) = if base.contains(1.0) || y.contains(0.0) { (lo.min(1.0), hi.max(1.0)) } else { (lo, hi) };
+        let (lo, hi) =
+            if base.contains(1.0) || y.contains(0.0) { (lo.min(1.0), hi.max(1.0)) } else { (lo, hi) };
         let wide = Interval::outward(lo, hi, self.partial || y.partial || self.lo < 0.0);
         Interval { lo: wide.lo.max(0.0), ..wide }
     }
@@ -231,13 +241,21 @@ impl Interval {
     /// The lesser.
     #[must_use]
     pub fn min(self, other: Interval) -> Interval {
-        Interval { lo: self.lo.min(other.lo), hi: self.hi.min(other.hi), partial: self.partial || other.partial }
+        Interval {
+            lo: self.lo.min(other.lo),
+            hi: self.hi.min(other.hi),
+            partial: self.partial || other.partial,
+        }
     }
 
     /// The greater.
     #[must_use]
     pub fn max(self, other: Interval) -> Interval {
-        Interval { lo: self.lo.max(other.lo), hi: self.hi.max(other.hi), partial: self.partial || other.partial }
+        Interval {
+            lo: self.lo.max(other.lo),
+            hi: self.hi.max(other.hi),
+            partial: self.partial || other.partial,
+        }
     }
 }
 

@@ -11,6 +11,7 @@ pub mod error;
 pub mod exact;
 pub mod field;
 pub mod interval;
+pub mod isolate;
 pub mod noise;
 pub mod solve;
 
