@@ -1,20 +1,33 @@
-//! Small pictures, one reason each, bit for bit: `tests/golden/<topic>/<name>.scene` beside its `.png`.
-//! `OGEE_BLESS=1` writes them anew. A failure leaves expected | difference | actual under `target/golden`.
+//! Small pictures, one reason each, bit for bit: `tests/golden/<topic>/<name>.scene` beside its parse and its `.png`, held by
+//! the same command that users have. `ogee test tests/golden --bless` writes them anew.
 
-use ogee::render::compare;
-use std::path::{Path, PathBuf};
+use std::path::Path;
+use std::process::Command;
 
-fn scenes() -> Vec<PathBuf> {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/golden");
-    let mut found = Vec::new();
-    for topic in std::fs::read_dir(root).expect("the goldens") {
-        for entry in std::fs::read_dir(topic.expect("a topic").path()).expect("a topic's scenes") {
-            let path = entry.expect("an entry").path();
-            if path.extension().is_some_and(|e| e == "scene") {
-                found.push(path);
-            }
-        }
-    }
-    found.sort();
-    found
+fn ogee(arguments: &[&str]) -> std::process::Output {
+    Command::new(env!("CARGO_BIN_EXE_ogee"))
+        .args(arguments)
+        .current_dir(Path::new(env!("CARGO_MANIFEST_DIR")))
+        .output()
+        .expect("the command runs")
+}
+
+#[test]
+fn every_golden_scene_parses_and_looks_as_it_did() {
+    let output = ogee(&["test", "tests/golden"]);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+}
+
+#[test]
+fn every_example_checks_without_a_word() {
+    let examples: Vec<_> = std::fs::read_dir(Path::new(env!("CARGO_MANIFEST_DIR")).join("examples"))
+        .expect("the examples")
+        .filter_map(|entry| entry.ok()?.path().to_str().map(str::to_owned))
+        .filter(|path| path.ends_with(".scene"))
+        .collect();
+    assert!(!examples.is_empty());
+    let mut arguments = vec!["check"];
+    arguments.extend(examples.iter().map(String::as_str));
+    let output = ogee(&arguments);
+    assert!(output.status.success() && output.stderr.is_empty(), "{}", String::from_utf8_lossy(&output.stderr));
 }
