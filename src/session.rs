@@ -3,7 +3,7 @@
 
 pub mod inspect;
 pub mod picture;
-mod whole;
+pub mod whole;
 
 use crate::diag::{Diagnostic, SourceMap};
 use crate::lang::value::Value;
