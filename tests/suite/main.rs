@@ -2,3 +2,4 @@
 
 mod intersection;
 mod layers;
+mod meshes;
