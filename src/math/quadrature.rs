@@ -45,12 +45,7 @@ const KRONROD: [f64; 8] = [
     0.20948214108472782,
 ];
 /// Weights of the Gauss rule at the odd places.
-const GAUSS: [f64; 4] = [
-    0.1294849661688697,
-    0.27970539148927664,
-    0.3818300505051189,
-    0.4179591836734694,
-];
+const GAUSS: [f64; 4] = [0.1294849661688697, 0.27970539148927664, 0.3818300505051189, 0.4179591836734694];
 
 /// Evaluations that one application of the rule costs.
 pub const EVALUATIONS: usize = 15;
