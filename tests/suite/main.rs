@@ -3,3 +3,6 @@
 mod intersection;
 mod layers;
 mod meshes;
+mod pictures;
+mod radiometry;
+mod stage;
