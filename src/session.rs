@@ -1,46 +1,21 @@
 //! The one door to the library for the command line, the tests and the REPL: a [`Session`] holds the sources, the options
 //! and the loader, and turns a file into a scene with everything that is wrong with it.
 
+mod answer;
 pub mod inspect;
-pub mod picture;
-pub mod whole;
+mod run;
+mod whole;
 
-use crate::diag::{Diagnostic, SourceMap};
-use crate::lang::value::Value;
+use crate::diag::{Code, Diagnostic, SourceMap};
 use crate::scene::Scene;
 use crate::scene::assets::{DiskLoader, Loader};
+use run::Root;
+use std::io::Read;
 use std::path::Path;
 use std::sync::Arc;
 
-/// Guards; each names itself and its flag (`--limit NAME=N`) when it is met.
-#[derive(Clone, Copy, Debug)]
-pub struct Limits {
-    /// How deeply brackets, braces and operators may nest (`nesting`).
-    pub nesting: usize,
-    /// How deeply calls may nest (`calls`).
-    pub calls: usize,
-    /// How many turns all loops of a run may take (`turns`).
-    pub turns: u64,
-    /// How many elements one list may have (`list`).
-    pub list: usize,
-    /// How many bytes a scene file may have (`file`).
-    pub file: u64,
-    /// How many bytes evaluation may allocate for values and objects, estimated (`memory`).
-    pub memory: u64,
-}
-
-impl Default for Limits {
-    fn default() -> Self {
-        Limits {
-            nesting: 256,
-            calls: 10_000,
-            turns: 1_000_000_000,
-            list: 50_000_000,
-            file: 1 << 30,
-            memory: 8 << 30,
-        }
-    }
-}
+pub use crate::lang::limits::Limits;
+pub use answer::Answer;
 
 /// What a run is asked for.
 #[derive(Clone, Debug, Default)]
@@ -100,14 +75,26 @@ impl Session {
 
     /// Reads and evaluates a scene file and its imports. `-` reads standard input.
     pub fn evaluate_file(&mut self, path: &Path) -> Evaluated {
-        let _ = path;
-        Evaluated { scene: Scene::default(), diagnostics: Vec::new(), printed: Vec::new() }
+        self.evaluate_path(path, None).evaluated
     }
 
     /// Evaluates a text as if it were a file of this name (relative paths and imports start at its folder).
     pub fn evaluate_text(&mut self, name: &str, text: &str) -> Evaluated {
-        let _ = (name, text);
-        Evaluated { scene: Scene::default(), diagnostics: Vec::new(), printed: Vec::new() }
+        self.evaluate(Root::Text(Path::new(name), text), None).evaluated
+    }
+
+    /// The same, and what the scene lacks as a whole is told too: a camera, a light, anything to see. A file that shows no
+    /// sign of being meant for a picture lacks nothing.
+    pub fn check_file(&mut self, path: &Path) -> Evaluated {
+        let mut outcome = self.evaluate_path(path, None);
+        let attempts = outcome.attempts;
+        let sees = |d: &Diagnostic| match d.code {
+            Code::NoCamera => !attempts.setting,
+            _ => !attempts.failed,
+        };
+        let lacking = whole::faults(&outcome.evaluated.scene, false).into_iter().filter(sees);
+        outcome.evaluated.diagnostics.extend(lacking);
+        outcome.evaluated
     }
 
     /// Evaluates one expression, with the names of a file in scope where one is given.
@@ -115,8 +102,31 @@ impl Session {
         &mut self,
         text: &str,
         file: Option<&Path>,
-    ) -> (Option<Value>, Vec<Diagnostic>) {
-        let _ = (text, file);
-        (None, Vec::new())
+    ) -> (Option<Answer>, Vec<Diagnostic>) {
+        let outcome = match file {
+            Some(path) => self.evaluate_path(path, Some(text)),
+            None => self.evaluate(Root::Nothing, Some(text)),
+        };
+        (outcome.answer, outcome.evaluated.diagnostics)
+    }
+
+    fn evaluate_path(&mut self, path: &Path, question: Option<&str>) -> run::Outcome {
+        if path != Path::new("-") {
+            return self.evaluate(Root::File(path), question);
+        }
+        let mut bytes = Vec::new();
+        let read = std::io::stdin().lock().read_to_end(&mut bytes).map_err(|e| e.to_string());
+        let text = read.and_then(|_| String::from_utf8(bytes).map_err(|e| e.to_string()));
+        match text {
+            Ok(text) => self.evaluate(Root::Text(Path::new("-"), &text), question),
+            Err(error) => {
+                let message = format!("standard input cannot be read: {error}");
+                Diagnostic::new(Code::FileNotFound, None, message).into()
+            }
+        }
+    }
+
+    fn evaluate(&mut self, root: Root<'_>, question: Option<&str>) -> run::Outcome {
+        run::evaluate(&mut self.sources, &self.options, &*self.loader, root, question)
     }
 }

@@ -249,7 +249,6 @@ pub fn shown(value: &Value) -> String {
         Value::Render(_) => "a render block".into(),
         Value::Transform(_) => "a transform".into(),
         Value::Fragment(_) => "a group of properties".into(),
-        Value::Module(_) => "an imported file".into(),
         Value::Word(word) => format!("the word `{word}`"),
     }
 }

@@ -28,7 +28,7 @@ pub enum Value {
     /// Integers or steps.
     Range(Rc<RangeValue>),
     /// A function of the scene: `fn`, or `p => …` with what it captured.
-    Function(Rc<super::eval::Closure>),
+    Function(Rc<super::eval::slots::Closure>),
     /// A function of the table of builtins.
     Builtin(&'static Builtin),
     /// An object.
@@ -47,18 +47,17 @@ pub enum Value {
     Transform(Rc<Affine>),
     /// Properties without a block: what a function of properties gives.
     Fragment(Rc<Fragment>),
-    /// An imported file: `trees.oak`.
-    Module(Rc<super::eval::Module>),
     /// A bare word where a property takes words: `lobe phong`.
     Word(Rc<str>),
 }
 
-/// The elements of a list; reads as a slice. Lists nested without bound are dropped without recursion.
+/// The elements of a list; reads as a slice.
 #[derive(Debug, Default)]
 pub struct List(Vec<Value>);
 
 impl From<Vec<Value>> for List {
     fn from(elements: Vec<Value>) -> List {
+        memory::hold(elements.capacity());
         List(elements)
     }
 }
@@ -70,10 +69,94 @@ impl std::ops::Deref for List {
     }
 }
 
+impl Drop for List {
+    fn drop(&mut self) {
+        memory::release(self.0.capacity());
+        if self.0.iter().any(is_container) {
+            bury(std::mem::take(&mut self.0));
+        }
+    }
+}
+
+/// Whether a value may hold others of any depth.
+pub(super) fn is_container(value: &Value) -> bool {
+    matches!(value, Value::List(_) | Value::Function(_))
+}
+
+/// Drops values one by one instead of one inside the other: the depth of lists and closures is not bounded, the stack is.
+pub(super) fn bury(values: Vec<Value>) {
+    thread_local! {
+        static WAITING: std::cell::RefCell<Option<Vec<Value>>> = const { std::cell::RefCell::new(None) };
+    }
+    let mut values = Some(values);
+    let first = WAITING.try_with(|waiting| match &mut *waiting.borrow_mut() {
+        Some(waiting) => {
+            waiting.extend(values.take().into_iter().flatten());
+            false
+        }
+        none => {
+            *none = values.take();
+            true
+        }
+    });
+    if first != Ok(true) {
+        return;
+    }
+    let next = || WAITING.try_with(|waiting| waiting.borrow_mut().as_mut().and_then(Vec::pop)).ok().flatten();
+    while let Some(value) = next() {
+        drop(value);
+    }
+    let _ = WAITING.try_with(|waiting| waiting.borrow_mut().take());
+}
+
+/// How much the lists of this thread hold.
+pub mod memory {
+    use std::cell::Cell;
+
+    thread_local! {
+        static ELEMENTS: Cell<usize> = const { Cell::new(0) };
+    }
+
+    pub(super) fn hold(elements: usize) {
+        ELEMENTS.with(|held| held.set(held.get() + elements));
+    }
+
+    pub(super) fn release(elements: usize) {
+        ELEMENTS.with(|held| held.set(held.get().saturating_sub(elements)));
+    }
+
+    /// Elements of all lists of this thread that are alive.
+    pub fn elements() -> usize {
+        ELEMENTS.with(Cell::get)
+    }
+}
+
+/// A vector of 2, 3 or 4 components; a number of one.
+pub fn vector(components: &[f64]) -> Value {
+    match *components {
+        [x, y] => Value::Vector2(DVec2::new(x, y)),
+        [x, y, z] => Value::Vector3(DVec3::new(x, y, z)),
+        [x, y, z, w] => Value::Vector4(Rc::new(DVec4::new(x, y, z, w))),
+        [x, ..] => Value::Number(x),
+        [] => Value::Number(0.0),
+    }
+}
+
+/// sRGB bytes to linear RGB.
+pub fn linear_from_srgb8(srgb: [u8; 3]) -> DVec3 {
+    let [r, g, b] = srgb.map(|c| linear_from_srgb(f64::from(c) / 255.0));
+    DVec3::new(r, g, b)
+}
+
+/// One sRGB channel in 0 … 1 to linear. IEC 61966-2-1.
+pub fn linear_from_srgb(c: f64) -> f64 {
+    if c <= 0.04045 { c / 12.92 } else { crate::math::elementary::powf((c + 0.055) / 1.055, 2.4) }
+}
+
 impl Value {
     /// A list of these elements.
     pub fn list(elements: Vec<Value>) -> Value {
-        Value::List(Rc::new(List(elements)))
+        Value::List(Rc::new(List::from(elements)))
     }
 
     /// A text.

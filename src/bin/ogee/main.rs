@@ -2,7 +2,6 @@
 
 mod args;
 mod commands;
-mod interrupt;
 mod place;
 mod speech;
 

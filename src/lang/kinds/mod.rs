@@ -70,6 +70,11 @@ pub fn is_word_of(property: &str, word: &str) -> bool {
     ALL.iter().filter_map(|kind| kind.property(property)).any(|p| p.words().any(|w| w == word))
 }
 
+/// The kind that a function's body becomes when it places objects.
+pub fn group() -> &'static Kind {
+    &objects::GROUP
+}
+
 /// Checks a block against the table and makes its value. An object of a kind that is not built yet is an empty group;
 /// any other such value is a warning and then silence.
 pub fn make(ctx: &mut dyn Context, mut block: Block) -> Outcome {

@@ -3,7 +3,6 @@
 use crate::args::Eval;
 use crate::speech::{Ended, Exit, data, show};
 use ogee::diag::Severity;
-use ogee::lang::value::Value;
 
 /// Prints the value, or says why there is none.
 pub fn run(args: &Eval) -> Ended {
@@ -14,13 +13,8 @@ pub fn run(args: &Eval) -> Ended {
     let (value, diagnostics) = session.evaluate_expression(&args.expression, args.file.as_deref());
     show(&diagnostics, &session.sources);
     if let Some(value) = value {
-        data(format!("{}\n", text(&value, args.digits)))?;
+        data(format!("{}\n", value.text(args.digits.map(usize::from))))?;
     }
     let failed = diagnostics.iter().any(|d| d.severity == Severity::Error);
     Ok(if failed { Exit::Scene } else { Exit::Done })
-}
-
-fn text(value: &Value, digits: Option<u8>) -> String {
-    let _ = digits;
-    format!("{value:?}")
 }

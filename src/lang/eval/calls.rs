@@ -1,0 +1,351 @@
+//! Calls.
+
+use super::slots::{Captured, Slot};
+use super::{Around, Call, Evaluator, Flow, Produced};
+use crate::diag::{Code, Diagnostic, Span};
+use crate::lang::builtins;
+use crate::lang::coerce::shown;
+use crate::lang::resolve::program::{
+    Access, Argument, CallBuiltin, CallFunction, CallMethod, CallValue, Expr, FunctionBody, FunctionId,
+};
+use crate::lang::table::{Arguments, Builtin, BuiltinBody, Context, Outcome, Reported};
+use crate::lang::value::Value;
+use std::rc::Rc;
+
+impl<'p> Evaluator<'p> {
+    /// A call of a function of one number.
+    #[inline]
+    pub(super) fn call_number(
+        &mut self,
+        builtin: &'static Builtin,
+        f: fn(f64) -> f64,
+        argument: &'p Expr,
+        span: Span,
+    ) -> Outcome {
+        let value = self.expr(argument)?;
+        if let Value::Number(x) = value {
+            let result = f(x);
+            if result.is_finite() {
+                return Ok(Value::Number(result));
+            }
+        }
+        self.call_table(builtin, &[value], &[argument.span], span)
+    }
+
+    fn call_table(
+        &mut self,
+        builtin: &'static Builtin,
+        values: &[Value],
+        spans: &[Span],
+        span: Span,
+    ) -> Outcome {
+        let value = builtins::call(self, builtin, &Arguments { values, spans, span })?;
+        match &value {
+            Value::Text(text) => self.spend(text.len() as u64, span)?,
+            Value::List(list) => self.reserve_list(list.len(), span)?,
+            _ => {}
+        }
+        Ok(value)
+    }
+
+    pub(super) fn call_builtin(&mut self, call: &'p CallBuiltin, span: Span) -> Outcome {
+        if let (BuiltinBody::Number2(f), [(0, a), (1, b)]) = (&call.builtin.body, &call.arguments[..]) {
+            let (a, b) = (self.expr(a)?, self.expr(b)?);
+            if let (&Value::Number(x), &Value::Number(y)) = (&a, &b) {
+                let result = f(x, y);
+                if result.is_finite() {
+                    return Ok(Value::Number(result));
+                }
+            }
+            return self.call_table(call.builtin, &[a, b], &call.spans, span);
+        }
+        let mut values = call.defaults.clone();
+        let mut outcome = Ok(());
+        for (i, argument) in &call.arguments {
+            match self.expr(argument) {
+                Ok(value) => values[*i as usize] = value,
+                Err(reported) => outcome = Err(reported),
+            }
+        }
+        outcome?;
+        self.call_table(call.builtin, &values, &call.spans, span)
+    }
+
+    /// A call of a declared function.
+    pub(super) fn call_function(&mut self, call: &'p CallFunction, span: Span) -> Outcome {
+        let captured = match call.callee {
+            Access::Global(_) => None,
+            Access::Sibling(_) => self.captured.clone(),
+            Access::Local(_) | Access::Captured(_) => match self.read(call.callee, span)? {
+                Value::Function(closure) => closure.captured.clone(),
+                other => return Err(self.not_callable(&other, span)),
+            },
+        };
+        let base = self.open_frame(call.function);
+        for (i, argument) in &call.arguments {
+            match self.expr(argument) {
+                Ok(value) => self.stack[base + *i as usize] = Slot::Value(value),
+                Err(reported) => {
+                    self.stack.truncate(base);
+                    return Err(reported);
+                }
+            }
+        }
+        self.enter(call.function, captured, base, span)
+    }
+
+    /// Slots for a frame; its base.
+    fn open_frame(&mut self, function: FunctionId) -> usize {
+        let base = self.stack.len();
+        let n_slots = self.program.functions[function.0 as usize].n_slots as usize;
+        self.stack.resize_with(base + n_slots, Slot::default);
+        base
+    }
+
+    /// Runs a function whose arguments stand in its frame, and takes the frame down.
+    fn enter(
+        &mut self,
+        function: FunctionId,
+        captured: Option<Rc<Captured>>,
+        base: usize,
+        span: Span,
+    ) -> Outcome {
+        if let Err(reported) = self.deeper(span) {
+            self.stack.truncate(base);
+            return Err(reported);
+        }
+        self.calls.push(Call { function, span, base });
+        let outer_base = std::mem::replace(&mut self.base, base);
+        let outer_captured = std::mem::replace(&mut self.captured, captured);
+        let value = self.run_function(function, span);
+        self.base = outer_base;
+        self.captured = outer_captured;
+        self.calls.pop();
+        self.stack.truncate(base);
+        value
+    }
+
+    fn run_function(&mut self, function: FunctionId, span: Span) -> Outcome {
+        let function = &self.program.functions[function.0 as usize];
+        for (i, parameter) in function.parameters.iter().enumerate() {
+            let slot = self.base + i;
+            if let (Some(default), Slot::Unset) = (&parameter.default, &self.stack[slot]) {
+                self.stack[slot] = Slot::Value(self.expr(default)?);
+            }
+        }
+        match &function.body {
+            FunctionBody::Expr(value) => self.expr(value),
+            FunctionBody::Items(body) => {
+                let mut out = Produced::new(Around::Braces);
+                match self.items(body, &mut out) {
+                    Flow::On => self.body_value(out, span),
+                    Flow::Return => match self.returned.take() {
+                        Some(value) => value,
+                        None => self.body_value(out, span),
+                    },
+                }
+            }
+        }
+    }
+
+    pub(super) fn call_value(&mut self, call: &'p CallValue, span: Span) -> Outcome {
+        let callee = self.expr(&call.callee);
+        let arguments = self.argument_values(&call.arguments);
+        let (callee, arguments) = (callee?, arguments?);
+        match &callee {
+            Value::Function(closure) => {
+                let base = self.open_frame(closure.function);
+                let bound = self.bind_arguments(closure.function, &call.arguments, arguments, base, span);
+                if let Err(reported) = bound {
+                    self.stack.truncate(base);
+                    return Err(reported);
+                }
+                self.enter(closure.function, closure.captured.clone(), base, span)
+            }
+            Value::Builtin(builtin) => self.call_builtin_value(builtin, &call.arguments, arguments, span),
+            other => Err(self.not_callable(other, call.callee.span)),
+        }
+    }
+
+    fn argument_values(&mut self, arguments: &'p [Argument]) -> Outcome<Vec<Value>> {
+        let mut values = Vec::with_capacity(arguments.len());
+        let mut outcome = Ok(());
+        for argument in arguments {
+            match self.expr(&argument.value) {
+                Ok(value) => values.push(value),
+                Err(reported) => outcome = Err(reported),
+            }
+        }
+        outcome.map(|()| values)
+    }
+
+    /// Puts arguments into a frame.
+    fn bind_arguments(
+        &mut self,
+        function: FunctionId,
+        arguments: &[Argument],
+        values: Vec<Value>,
+        base: usize,
+        span: Span,
+    ) -> Outcome<()> {
+        let function = &self.program.functions[function.0 as usize];
+        for (position, (argument, value)) in arguments.iter().zip(values).enumerate() {
+            let i = match &argument.name {
+                None => position,
+                Some((name, name_span)) => match function.parameters.iter().position(|p| p.name == *name) {
+                    Some(i) => i,
+                    None => {
+                        let names = function.parameters.iter().map(|p| &*p.name);
+                        let said =
+                            Diagnostic::new(Code::WrongArity, *name_span, format!("no parameter is called `{name}`"))
+                                .did_you_mean(name, names)
+                                .also(function.span, "defined here");
+                        return Err(self.fail(said));
+                    }
+                },
+            };
+            if i >= function.parameters.len() {
+                return Err(self.wrong_count(function, arguments.len(), span));
+            }
+            self.stack[base + i] = Slot::Value(value);
+        }
+        self.check_bound(function, arguments.len(), base, span)
+    }
+
+    fn check_bound(
+        &mut self,
+        function: &crate::lang::resolve::program::Function,
+        n: usize,
+        base: usize,
+        span: Span,
+    ) -> Outcome<()> {
+        let unset = |i: usize| matches!(self.stack[base + i], Slot::Unset);
+        let lacks = function.parameters.iter().enumerate().any(|(i, p)| p.default.is_none() && unset(i));
+        if lacks { Err(self.wrong_count(function, n, span)) } else { Ok(()) }
+    }
+
+    #[cold]
+    fn wrong_count(
+        &mut self,
+        function: &crate::lang::resolve::program::Function,
+        n: usize,
+        span: Span,
+    ) -> Reported {
+        let parameters: Vec<&str> = function.parameters.iter().map(|p| &*p.name).collect();
+        let message = format!(
+            "this function takes {} ({}), and it is called with {n}",
+            match parameters.len() {
+                0 => "no arguments".to_owned(),
+                1 => "1 argument".to_owned(),
+                many => format!("{many} arguments"),
+            },
+            parameters.join(", ")
+        );
+        self.fail(Diagnostic::new(Code::WrongArity, span, message).also(function.span, "defined here"))
+    }
+
+    /// A builtin that was passed around as a value.
+    fn call_builtin_value(
+        &mut self,
+        builtin: &'static Builtin,
+        arguments: &[Argument],
+        values: Vec<Value>,
+        span: Span,
+    ) -> Outcome {
+        let mut bound: Vec<Option<(Value, Span)>> = builtin
+            .parameters
+            .iter()
+            .map(|p| Some((builtins::default_value(p.default?)?, span)))
+            .collect();
+        for (position, (argument, value)) in arguments.iter().zip(values).enumerate() {
+            let named = |name: &str| builtin.parameters.iter().position(|p| p.name == name);
+            let i = argument.name.as_ref().map_or(Some(position), |(name, _)| named(name));
+            match i {
+                Some(i) if i < bound.len() => bound[i] = Some((value, argument.value.span)),
+                Some(_) if builtin.variadic => bound.push(Some((value, argument.value.span))),
+                Some(_) | None => return Err(self.wrong_builtin_count(builtin, span)),
+            }
+        }
+        match bound.into_iter().collect::<Option<Vec<_>>>() {
+            Some(bound) => {
+                let (values, spans): (Vec<Value>, Vec<Span>) = bound.into_iter().unzip();
+                self.call_table(builtin, &values, &spans, span)
+            }
+            None => Err(self.wrong_builtin_count(builtin, span)),
+        }
+    }
+
+    #[cold]
+    fn wrong_builtin_count(&mut self, builtin: &Builtin, span: Span) -> Reported {
+        let names: Vec<&str> = builtin.parameters.iter().map(|p| p.name).collect();
+        let message = format!("`{}` takes other arguments than these", builtin.name);
+        self.fail(
+            Diagnostic::new(Code::WrongArity, span, message)
+                .hint(format!("it is called `{}({})`", builtin.name, names.join(", "))),
+        )
+    }
+
+    /// A call from a builtin (`map`, `fold`): surplus arguments are an error as in any call.
+    pub(super) fn call_with_values(&mut self, function: &Value, arguments: &[Value], at: Span) -> Outcome {
+        match function {
+            Value::Function(closure) => {
+                let base = self.open_frame(closure.function);
+                let n = self.program.functions[closure.function.0 as usize].parameters.len();
+                for (slot, value) in self.stack[base..].iter_mut().zip(arguments).take(n) {
+                    *slot = Slot::Value(value.clone());
+                }
+                let declared = &self.program.functions[closure.function.0 as usize];
+                let bound = if arguments.len() > n {
+                    Err(self.wrong_count(declared, arguments.len(), at))
+                } else {
+                    self.check_bound(declared, arguments.len(), base, at)
+                };
+                if let Err(reported) = bound {
+                    self.stack.truncate(base);
+                    return Err(reported);
+                }
+                self.enter(closure.function, closure.captured.clone(), base, at)
+            }
+            Value::Builtin(builtin) => {
+                self.deeper(at)?;
+                let mut values = arguments.to_vec();
+                for parameter in builtin.parameters.iter().skip(arguments.len()) {
+                    match parameter.default.and_then(builtins::default_value) {
+                        Some(default) => values.push(default),
+                        None => return Err(self.wrong_builtin_count(builtin, at)),
+                    }
+                }
+                if values.len() > builtin.parameters.len() && !builtin.variadic {
+                    return Err(self.wrong_builtin_count(builtin, at));
+                }
+                let spans = vec![at; values.len()];
+                self.call_table(builtin, &values, &spans, at)
+            }
+            other => Err(self.not_callable(other, at)),
+        }
+    }
+
+    #[cold]
+    fn not_callable(&mut self, value: &Value, span: Span) -> Reported {
+        let message = format!("only functions are called, and this is {}", shown(value));
+        let said = Diagnostic::new(Code::NotCallable, span, message);
+        self.fail(match value {
+            Value::Number(_) => said.hint("a product is written with `*`"),
+            Value::List(_) => said.hint("an element is written `list[i]`"),
+            _ => said,
+        })
+    }
+
+    /// A method of a value. No value that is built yet has any.
+    pub(super) fn call_method(&mut self, call: &'p CallMethod) -> Outcome {
+        let base = self.expr(&call.base);
+        let arguments = self.argument_values(&call.arguments);
+        let (base, _) = (base?, arguments?);
+        let message = format!("{} has no method `{}`", shown(&base), call.name);
+        let said = Diagnostic::new(Code::NoSuchField, call.name_span, message);
+        Err(self.fail(match builtins::find(&call.name) {
+            Some(_) => said.hint(format!("`{0}` is a function: write `{0}(value, …)`", call.name)),
+            None => said,
+        }))
+    }
+}

@@ -1,0 +1,69 @@
+//! What builders and builtins may ask of a run.
+
+use super::Evaluator;
+use crate::diag::{Diagnostic, Span};
+use crate::lang::compile;
+use crate::lang::table::{Context, Outcome};
+use crate::lang::value::Value;
+use crate::scene::assets::Loader;
+use crate::scene::{SampleInput, SampledFunction};
+use std::path::PathBuf;
+use std::sync::Arc;
+
+impl Context for Evaluator<'_> {
+    fn report(&mut self, diagnostic: Diagnostic) {
+        self.say(diagnostic);
+    }
+
+    fn call(&mut self, function: &Value, arguments: &[Value], at: Span) -> Outcome {
+        self.call_with_values(function, arguments, at)
+    }
+
+    fn arity(&self, function: &Value) -> Option<(usize, usize)> {
+        match function {
+            Value::Function(closure) => {
+                let parameters = &self.program.functions[closure.function.0 as usize].parameters;
+                Some((parameters.len(), parameters.iter().filter(|p| p.default.is_none()).count()))
+            }
+            Value::Builtin(builtin) => {
+                let needed = builtin.parameters.iter().filter(|p| p.default.is_none()).count();
+                Some((builtin.parameters.len(), needed))
+            }
+            _ => None,
+        }
+    }
+
+    fn path(&self, written: &str, at: Span) -> PathBuf {
+        self.run.files.join(written, at)
+    }
+
+    fn loader(&self) -> &dyn Loader {
+        self.run.loader
+    }
+
+    fn print(&mut self, text: String) {
+        self.printed.push(text);
+    }
+
+    fn sampled(
+        &mut self,
+        function: &Value,
+        input: SampleInput,
+        outputs: &[usize],
+        at: Span,
+    ) -> Outcome<Arc<SampledFunction>> {
+        match compile::compile(self.program, &self.globals, function, input, outputs, at) {
+            Ok(field) => Ok(Arc::new(field)),
+            Err(Some(diagnostic)) => Err(self.fail(diagnostic)),
+            Err(None) => Err(crate::lang::table::Reported),
+        }
+    }
+
+    fn reserve(&mut self, elements: usize, at: Span) -> Outcome<()> {
+        self.reserve_list(elements, at)
+    }
+
+    fn time(&self) -> (f64, f64) {
+        self.run.time
+    }
+}

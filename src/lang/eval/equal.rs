@@ -1,0 +1,50 @@
+//! Equality of values.
+
+use crate::lang::value::Value;
+use std::rc::Rc;
+use std::sync::Arc;
+
+/// `a == b`: numbers, texts, vectors and lists by what they hold, built values and functions by being the same one. Values of
+/// different types differ. Lists may be nested without bound.
+pub fn equal(a: &Value, b: &Value) -> bool {
+    let mut waiting = vec![(a.clone(), b.clone())];
+    while let Some((a, b)) = waiting.pop() {
+        match (&a, &b) {
+            (Value::List(u), Value::List(v)) => {
+                if u.len() != v.len() {
+                    return false;
+                }
+                if !Rc::ptr_eq(u, v) {
+                    waiting.extend(u.iter().cloned().zip(v.iter().cloned()));
+                }
+            }
+            _ if !same(&a, &b) => return false,
+            _ => {}
+        }
+    }
+    true
+}
+
+fn same(a: &Value, b: &Value) -> bool {
+    match (a, b) {
+        (Value::Number(x), Value::Number(y)) => x == y,
+        (Value::Bool(x), Value::Bool(y)) => x == y,
+        (Value::Text(s), Value::Text(t)) => s == t,
+        (Value::Word(s), Value::Word(t)) => s == t,
+        (Value::Vector2(u), Value::Vector2(v)) => u == v,
+        (Value::Vector3(u), Value::Vector3(v)) => u == v,
+        (Value::Vector4(u), Value::Vector4(v)) => u == v,
+        (Value::Range(r), Value::Range(s)) => (r.start, r.step, r.len) == (s.start, s.step, s.len),
+        (Value::Transform(s), Value::Transform(t)) => s == t,
+        (Value::Function(f), Value::Function(g)) => Rc::ptr_eq(f, g),
+        (Value::Builtin(f), Value::Builtin(g)) => std::ptr::eq(*f, *g),
+        (Value::Object(x), Value::Object(y)) => Arc::ptr_eq(x, y),
+        (Value::Light(x), Value::Light(y)) => Arc::ptr_eq(x, y),
+        (Value::Material(x), Value::Material(y)) => Arc::ptr_eq(x, y),
+        (Value::Pattern(x), Value::Pattern(y)) => Arc::ptr_eq(x, y),
+        (Value::Camera(x), Value::Camera(y)) => x == y,
+        (Value::Render(x), Value::Render(y)) => x == y,
+        (Value::Fragment(x), Value::Fragment(y)) => Rc::ptr_eq(x, y),
+        _ => false,
+    }
+}

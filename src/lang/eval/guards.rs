@@ -1,0 +1,119 @@
+//! Guards against scenes that would never end or need more than the machine has.
+
+use super::Evaluator;
+use crate::diag::{Code, Span};
+use crate::lang::limits::{Limits, exceeded};
+use crate::lang::table::{Context, Outcome, Reported};
+use crate::lang::value::{Value, memory};
+
+/// What is left of each guard.
+pub(super) struct Guards {
+    turns: u64,
+    /// Bytes of objects and texts made so far, estimated; lists are counted while they live.
+    bytes: u64,
+    /// The address below which the stack may not grow.
+    floor: usize,
+}
+
+/// Stack that is kept free below the deepest call for what one call may nest: per level of brackets.
+const STACK_PER_LEVEL: usize = 8 << 10;
+
+impl Guards {
+    pub(super) fn new(limits: &Limits, stack: usize) -> Guards {
+        let reserve = (limits.nesting.saturating_mul(STACK_PER_LEVEL)).clamp(256 << 10, stack / 2);
+        Guards { turns: limits.turns, bytes: 0, floor: here().saturating_sub(stack - reserve) }
+    }
+}
+
+/// About where the stack has grown to.
+#[inline(never)]
+fn here() -> usize {
+    let mark = 0u8;
+    std::ptr::from_ref(&mark).addr()
+}
+
+impl Evaluator<'_> {
+    /// Counts a turn of a loop.
+    #[inline]
+    pub(super) fn turn(&mut self, span: Span) -> Outcome<()> {
+        match self.guards.turns.checked_sub(1) {
+            Some(left) => {
+                self.guards.turns = left;
+                Ok(())
+            }
+            None => Err(self.too_many_turns(span)),
+        }
+    }
+
+    #[cold]
+    fn too_many_turns(&mut self, span: Span) -> Reported {
+        let limit = self.run.limits.turns;
+        let message = format!("loops and calls have taken {limit} turns");
+        self.fail(exceeded(Code::LoopLimit, span, message, "turns", limit).label("still running here"))
+    }
+
+    /// Counts a call and its depth.
+    #[inline]
+    pub(super) fn deeper(&mut self, span: Span) -> Outcome<()> {
+        if self.calls.len() >= self.run.limits.calls {
+            return Err(self.too_deep(span));
+        }
+        if self.calls.len() & 15 == 0 && here() < self.guards.floor {
+            return Err(self.out_of_stack(span));
+        }
+        self.turn(span)
+    }
+
+    #[cold]
+    fn too_deep(&mut self, span: Span) -> Reported {
+        let limit = self.run.limits.calls as u64;
+        let message = format!("calls are nested {limit} deep");
+        self.fail(
+            exceeded(Code::CallDepth, span, message, "calls", limit)
+                .label("calls itself again")
+                .hint("does the recursion come to an end?"),
+        )
+    }
+
+    #[cold]
+    fn out_of_stack(&mut self, span: Span) -> Reported {
+        let depth = self.calls.len();
+        let message = format!("calls are nested {depth} deep, and the stack ends");
+        self.fail(
+            crate::diag::Diagnostic::new(Code::CallDepth, span, message)
+                .hint("nest fewer blocks and choices inside the function that calls itself, or use a loop"),
+        )
+    }
+
+    /// Counts bytes of objects or texts.
+    #[inline]
+    pub(super) fn spend(&mut self, bytes: u64, span: Span) -> Outcome<()> {
+        self.guards.bytes += bytes;
+        self.check_memory(0, span)
+    }
+
+    fn check_memory(&mut self, more: u64, span: Span) -> Outcome<()> {
+        let lists = (memory::elements() * size_of::<Value>()) as u64;
+        if self.guards.bytes.saturating_add(lists).saturating_add(more) > self.run.limits.memory {
+            return Err(self.out_of_memory(span));
+        }
+        Ok(())
+    }
+
+    #[cold]
+    fn out_of_memory(&mut self, span: Span) -> Reported {
+        let limit = self.run.limits.memory;
+        let message = format!("the scene's values and objects need more than {} MiB", limit >> 20);
+        self.fail(exceeded(Code::MemoryLimit, span, message, "memory", limit).label("more is asked for here"))
+    }
+
+    /// Counts the elements of a list that is about to be made, or to grow to this length.
+    pub(super) fn reserve_list(&mut self, elements: usize, span: Span) -> Outcome<()> {
+        let limit = self.run.limits.list;
+        if elements > limit {
+            let message = format!("a list of {elements} elements");
+            return Err(self.fail(exceeded(Code::ListLimit, span, message, "list", limit as u64)));
+        }
+        self.check_memory((elements * size_of::<Value>()) as u64, span)
+    }
+}

@@ -1,0 +1,192 @@
+//! Evaluation of a resolved program: a walk over its tree with values in slots. It knows no kind and no builtin by name; both
+//! are looked up in their tables.
+//!
+//! An error ends the item it stands in, and evaluation goes on with the next; a name whose value failed is poison, whose
+//! uses are silent. So every independent fault of a file is told in one run.
+
+mod blocks;
+mod calls;
+mod context;
+mod equal;
+mod expressions;
+mod fields;
+mod guards;
+mod items;
+pub mod operators;
+mod report;
+pub mod slots;
+
+use super::limits::Limits;
+use super::resolve::load::Files;
+use super::resolve::program::{FunctionId, Program, UnitId};
+use super::table::Outcome;
+use super::value::{Given, Value};
+use crate::diag::{Sink, Span};
+use crate::scene::assets::Loader;
+use crate::scene::{Camera, Node, RenderSettings, Scene};
+use guards::Guards;
+use slots::{Captured, Slot};
+use std::rc::Rc;
+
+/// What a run is given.
+pub struct Run<'p> {
+    /// The program.
+    pub program: &'p Program,
+    /// Its files, for paths and traces.
+    pub files: &'p Files,
+    /// The way files are read.
+    pub loader: &'p dyn Loader,
+    /// Guards.
+    pub limits: Limits,
+    /// `time` and `frame`.
+    pub time: (f64, f64),
+    /// How many bytes of stack this thread may use.
+    pub stack: usize,
+}
+
+/// What a run gives.
+#[derive(Default)]
+pub struct Ran {
+    /// What could be made.
+    pub scene: Scene,
+    /// The value of the question, where there was one.
+    pub answer: Option<Value>,
+    /// What `print` said.
+    pub printed: Vec<String>,
+    /// What was tried, also where it failed.
+    pub attempts: Attempts,
+}
+
+/// What a scene tried to make, so that nothing is called missing that only failed.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Attempts {
+    /// A top-level item of any sort failed.
+    pub failed: bool,
+    /// A camera or render block was tried.
+    pub setting: bool,
+}
+
+/// Runs a program.
+pub fn run(run: &Run<'_>, sink: &mut Sink) -> Ran {
+    let mut evaluator = Evaluator::new(run, sink);
+    let mut ran = Ran::default();
+    let (top, nodes) = evaluator.unit(UnitId(0));
+    if let Some(question) = &run.program.question {
+        ran.answer = evaluator.ask(question);
+    }
+    ran.scene = Scene { nodes, cameras: top.cameras, render: top.render.unwrap_or_default() };
+    ran.attempts = top.attempts;
+    ran.printed = std::mem::take(&mut evaluator.printed);
+    ran
+}
+
+/// What belongs to a scene as a whole.
+#[derive(Default)]
+struct Top {
+    cameras: Vec<Camera>,
+    render: Option<RenderSettings>,
+    attempts: Attempts,
+}
+
+/// What items made so far.
+struct Produced {
+    around: Around,
+    given: Vec<Given>,
+    nodes: Vec<Node>,
+    poisoned: Vec<(Rc<str>, Span)>,
+    failed: bool,
+}
+
+impl Produced {
+    fn new(around: Around) -> Self {
+        Produced { around, given: Vec::new(), nodes: Vec::new(), poisoned: Vec::new(), failed: false }
+    }
+}
+
+/// What is around items.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Around {
+    /// A file's top level.
+    Top,
+    /// A block's braces, a function's body, a `with`.
+    Braces,
+}
+
+/// What items do to the items after them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Flow {
+    /// The next one runs.
+    On,
+    /// A function returns; its value is in [`Evaluator::returned`].
+    Return,
+}
+
+/// A call that is running.
+#[derive(Clone, Copy, Debug)]
+struct Call {
+    function: FunctionId,
+    span: Span,
+    base: usize,
+}
+
+struct Evaluator<'p> {
+    run: &'p Run<'p>,
+    program: &'p Program,
+    stack: Vec<Slot>,
+    base: usize,
+    captured: Option<Rc<Captured>>,
+    globals: Vec<Slot>,
+    units_done: Vec<bool>,
+    calls: Vec<Call>,
+    returned: Option<Outcome>,
+    top: Top,
+    guards: Guards,
+    sink: &'p mut Sink,
+    printed: Vec<String>,
+}
+
+impl<'p> Evaluator<'p> {
+    fn new(run: &'p Run<'p>, sink: &'p mut Sink) -> Self {
+        let mut globals = Vec::new();
+        globals.resize_with(run.program.globals.len(), Slot::default);
+        Evaluator {
+            run,
+            program: run.program,
+            stack: Vec::new(),
+            base: 0,
+            captured: None,
+            globals,
+            units_done: vec![false; run.program.units.len()],
+            calls: Vec::new(),
+            returned: None,
+            top: Top::default(),
+            guards: Guards::new(&run.limits, run.stack),
+            sink,
+            printed: Vec::new(),
+        }
+    }
+
+    /// Runs a unit in a frame of its own: what belongs to the scene, and what it places.
+    fn unit(&mut self, id: UnitId) -> (Top, Vec<Node>) {
+        self.units_done[id.0 as usize] = true;
+        let unit = &self.program.units[id.0 as usize];
+        let around = std::mem::take(&mut self.top);
+        let (base, captured) = (self.base, self.captured.take());
+        self.base = self.stack.len();
+        self.stack.resize_with(self.base + unit.n_slots as usize, Slot::default);
+        let mut out = Produced::new(Around::Top);
+        self.items(&unit.body, &mut out);
+        if id.0 != 0 {
+            self.stack.truncate(self.base);
+        }
+        (self.base, self.captured) = (base, captured);
+        let mut top = std::mem::replace(&mut self.top, around);
+        top.attempts.failed |= out.failed;
+        (top, out.nodes)
+    }
+
+    /// An expression in the frame of the root unit.
+    fn ask(&mut self, question: &'p super::resolve::program::Expr) -> Option<Value> {
+        self.expr(question).ok()
+    }
+}

@@ -1,0 +1,239 @@
+//! A file and everything that it imports, read and parsed before any name is resolved.
+
+use crate::diag::{Code, Diagnostic, Frame, Sink, SourceId, SourceMap, Span};
+use crate::lang::limits::{Limits, exceeded};
+use crate::scene::assets::Loader;
+use crate::syntax::ast;
+use crate::syntax::build::{ParseLimits, parse_file};
+use std::collections::HashMap;
+use std::path::{Component, Path, PathBuf};
+
+/// Index into [`Files::files`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct FileId(pub usize);
+
+/// A parsed file.
+#[derive(Debug)]
+pub struct LoadedFile {
+    /// Its tree.
+    pub tree: ast::File,
+    /// Its source.
+    pub source: SourceId,
+    /// The import that first asked for it.
+    pub imported_by: Option<Span>,
+}
+
+/// The files of a program; the first is the root.
+#[derive(Debug, Default)]
+pub struct Files {
+    /// In the order they were read.
+    pub files: Vec<LoadedFile>,
+    /// The file that each import names, by the place of its path; absent where it could not be read.
+    pub imports: HashMap<Span, FileId>,
+    /// Each source's path, as paths are joined to it.
+    pub paths: HashMap<SourceId, PathBuf>,
+}
+
+impl Files {
+    /// The imports that led to a source, innermost first.
+    pub fn import_trace(&self, mut source: SourceId) -> Vec<Frame> {
+        let mut frames = Vec::new();
+        while let Some(span) = self.files.iter().find(|f| f.source == source).and_then(|f| f.imported_by) {
+            frames.push(Frame { span, text: "imported here".into() });
+            source = span.source;
+        }
+        frames
+    }
+
+    /// A path as written at a place, joined to the folder of the file it stands in.
+    pub fn join(&self, written: &str, at: Span) -> PathBuf {
+        let folder = self.paths.get(&at.source).and_then(|p| p.parent());
+        folder.map_or_else(|| PathBuf::from(written), |folder| folder.join(written))
+    }
+}
+
+/// Reads files and their imports.
+pub struct Reading<'a> {
+    /// How.
+    pub loader: &'a dyn Loader,
+    /// Where the texts are kept.
+    pub sources: &'a mut SourceMap,
+    /// Guards.
+    pub limits: Limits,
+    /// Where faults go.
+    pub sink: &'a mut Sink,
+    /// What was read.
+    pub files: Files,
+    by_path: HashMap<PathBuf, Option<FileId>>,
+}
+
+impl<'a> Reading<'a> {
+    /// Nothing read yet.
+    pub fn new(
+        loader: &'a dyn Loader,
+        sources: &'a mut SourceMap,
+        limits: Limits,
+        sink: &'a mut Sink,
+    ) -> Self {
+        Reading { loader, sources, limits, sink, files: Files::default(), by_path: HashMap::new() }
+    }
+
+    /// Reads a root file. None where it cannot be read, which is reported.
+    pub fn root_file(&mut self, path: &Path) -> Option<FileId> {
+        let text = self.read(path, None)?;
+        Some(self.root_text(path, &text))
+    }
+
+    /// Takes a text as the root file of this path.
+    pub fn root_text(&mut self, path: &Path, text: &str) -> FileId {
+        self.add(path, text, None, &mut Vec::new())
+    }
+
+    fn add(
+        &mut self,
+        path: &Path,
+        text: &str,
+        imported_by: Option<Span>,
+        chain: &mut Vec<(PathBuf, Span)>,
+    ) -> FileId {
+        let source = self.sources.add(path.to_string_lossy(), text);
+        let (tree, faults) = parse_file(source, text, ParseLimits { depth: self.limits.nesting });
+        let id = FileId(self.files.files.len());
+        let mut imports = Vec::new();
+        collect_imports(&tree.items, &mut imports);
+        self.files.files.push(LoadedFile { tree, source, imported_by });
+        self.files.paths.insert(source, path.to_owned());
+        self.by_path.insert(normal(path), Some(id));
+        for fault in faults {
+            self.report(fault);
+        }
+        for import in imports {
+            chain.push((normal(path), import.path_span));
+            self.import(&import, chain);
+            chain.pop();
+        }
+        id
+    }
+
+    fn import(&mut self, import: &ast::Import, chain: &mut Vec<(PathBuf, Span)>) {
+        let path = self.files.join(&import.path, import.path_span);
+        let key = normal(&path);
+        if let Some(start) = chain.iter().position(|(file, _)| *file == key) {
+            return self.report_cycle(&chain[start..], import.path_span);
+        }
+        let id = match self.by_path.get(&key) {
+            Some(known) => *known,
+            None => self
+                .read(&path, Some(import.path_span))
+                .map(|text| self.add(&path, &text, Some(import.path_span), chain)),
+        };
+        self.by_path.insert(key, id);
+        if let Some(id) = id {
+            self.files.imports.insert(import.path_span, id);
+        }
+    }
+
+    fn report(&mut self, mut diagnostic: Diagnostic) {
+        if let Some(span) = diagnostic.span {
+            diagnostic.trace.extend(self.files.import_trace(span.source));
+        }
+        self.sink.push(diagnostic);
+    }
+
+    fn report_cycle(&mut self, chain: &[(PathBuf, Span)], closing: Span) {
+        let name = |p: &Path| p.file_name().unwrap_or(p.as_os_str()).to_string_lossy().into_owned();
+        let mut names: Vec<String> = chain.iter().map(|(p, _)| name(p)).collect();
+        names.extend(names.first().cloned());
+        let mut said = Diagnostic::new(
+            Code::ImportCycle,
+            closing,
+            format!("files import each other in a circle: {}", names.join(" → ")),
+        )
+        .label("closes the circle")
+        .hint("move what both files need into a third one");
+        for (_, span) in chain.iter().filter(|(_, span)| *span != closing) {
+            said = said.also(*span, "on the way");
+        }
+        self.report(said);
+    }
+
+    /// A file's text; faults are reported at the import, or without a place for the root.
+    fn read(&mut self, path: &Path, at: Option<Span>) -> Option<String> {
+        let shown = path.display();
+        let bytes = match self.loader.read(path) {
+            Ok(bytes) => bytes,
+            Err(error) => {
+                let said = Diagnostic::new(Code::FileNotFound, at, format!("`{shown}` cannot be read: {error}"));
+                self.report(match at {
+                    Some(_) => said.hint("a path is relative to the file that writes it"),
+                    None => said,
+                });
+                return None;
+            }
+        };
+        let most = self.limits.file.min(u64::from(u32::MAX) - 1);
+        if bytes.len() as u64 > most {
+            let message = format!("`{shown}` has {} bytes", bytes.len());
+            self.report(exceeded(Code::FileTooLarge, at, message, "file", most));
+            return None;
+        }
+        match String::from_utf8(bytes) {
+            Ok(text) => Some(text),
+            Err(error) => {
+                let place = error.utf8_error().valid_up_to();
+                let line = 1 + error.as_bytes()[..place].iter().filter(|b| **b == b'\n').count();
+                let message = format!("`{shown}` is not UTF-8 text: byte {place}, in line {line}, begins no character");
+                self.report(
+                    Diagnostic::new(Code::NotUtf8, at, message).hint("save the file as UTF-8 in your editor"),
+                );
+                None
+            }
+        }
+    }
+}
+
+/// A path without `.` and `..` where that can be told from the text, so that one file has one key.
+fn normal(path: &Path) -> PathBuf {
+    let mut out = PathBuf::new();
+    for part in path.components() {
+        match part {
+            Component::CurDir => {}
+            Component::ParentDir if matches!(out.components().next_back(), Some(Component::Normal(_))) => {
+                out.pop();
+            }
+            Component::ParentDir | Component::Normal(_) | Component::RootDir | Component::Prefix(_) => {
+                out.push(part);
+            }
+        }
+    }
+    out
+}
+
+/// The imports among items, at any depth of blocks, choices, loops and function bodies, in source order. Those inside
+/// expressions' blocks are found too.
+fn collect_imports(items: &[ast::Item], found: &mut Vec<ast::Import>) {
+    for item in items {
+        match &item.kind {
+            ast::ItemKind::Import(import) => found.push((**import).clone()),
+            ast::ItemKind::Block(block) => collect_imports(&block.items, found),
+            ast::ItemKind::Function(function) => {
+                if let ast::Body::Items(items) = &function.body {
+                    collect_imports(items, found);
+                }
+            }
+            ast::ItemKind::If(choice) => {
+                choice.arms.iter().for_each(|(_, items)| collect_imports(items, found));
+                choice.otherwise.iter().for_each(|items| collect_imports(items, found));
+            }
+            ast::ItemKind::For(turns) => collect_imports(&turns.items, found),
+            ast::ItemKind::While(turns) => collect_imports(&turns.items, found),
+            ast::ItemKind::Property(_)
+            | ast::ItemKind::Placement(_)
+            | ast::ItemKind::Let(..)
+            | ast::ItemKind::Var(..)
+            | ast::ItemKind::Assign(..)
+            | ast::ItemKind::Return(_)
+            | ast::ItemKind::Bad { .. } => {}
+        }
+    }
+}
