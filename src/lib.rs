@@ -16,6 +16,7 @@
 //! | [`lang`] | names, values, evaluation, the table of kinds and of functions | scene, geometry, math, syntax, diag |
 //! | [`world`] | what rays see: shapes, trees, lights, BSDFs | scene, geometry, math, diag |
 //! | [`render`] | cameras, samplers, tracers, films, pictures on disk | world, scene, math, diag |
+//! | [`report`] | kernels measured: speed against error | render, world, scene, geometry, math |
 //! | [`session`] | the one door for the command line, the tests, the REPL | all of them |
 //!
 //! A test holds these directions against every `use crate::` of the tree.
@@ -25,6 +26,7 @@ pub mod geometry;
 pub mod lang;
 pub mod math;
 pub mod render;
+pub mod report;
 pub mod scene;
 pub mod session;
 pub mod syntax;

@@ -3,8 +3,13 @@
 
 mod answer;
 pub mod inspect;
+<<<<<<< 9d608f7
+pub mod picture;
+pub mod whole;
+=======
 mod run;
 mod whole;
+>>>>>>> fdd0656
 
 use crate::diag::{Code, Diagnostic, SourceMap};
 use crate::scene::Scene;

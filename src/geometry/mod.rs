@@ -1,3 +1,5 @@
-//! Shapes as numbers, without spans: meshes now; curves, patches and skeletons to come.
+//! Shapes as numbers, without spans: meshes, bases, curves; patches and skeletons to come.
 
+pub mod basis;
+pub mod curve;
 pub mod mesh;

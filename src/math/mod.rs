@@ -4,13 +4,23 @@
 //! gives the same bits on every machine.
 
 pub mod affine;
+pub mod bernstein;
 pub mod bounds;
+pub mod bracket;
 pub mod colour;
+pub mod dd;
 pub mod elementary;
 pub mod error;
+pub mod exact;
 pub mod field;
+pub mod interval;
+pub mod isolate;
 pub mod noise;
+pub mod point;
+pub mod quadrature;
 pub mod solve;
 
 pub use affine::Affine;
 pub use bounds::Aabb;
+pub use dd::Dd;
+pub use point::Point;

@@ -53,6 +53,16 @@ pub enum EmitterShape {
     Torus(Torus),
     /// One triangle.
     Triangle(Triangle),
-    /// The triangles of a mesh that are of this material.
+    /// Triangles of a mesh, by number, ascending.
     Mesh(Arc<Mesh>, Vec<u32>),
+}
+
+impl EmitterShape {
+    /// Whether a primitive's part (a mesh's triangle, else 0) is of this emitter.
+    pub fn has_part(&self, part: u32) -> bool {
+        match self {
+            EmitterShape::Mesh(_, triangles) => triangles.binary_search(&part).is_ok(),
+            _ => true,
+        }
+    }
 }

@@ -4,21 +4,28 @@
 //! [`lower`] makes a [`World`] of a scene's nodes; [`World::closest`], [`World::occluded`] and [`World::transmittance`] ask
 //! it about rays; [`Hit::spawn`] goes on from where a ray ended.
 
+mod aggregate;
 pub mod bsdf;
 pub mod bvh;
 mod emitter;
 mod hit;
 pub mod light;
 pub mod lower;
+mod place;
+mod query;
 pub mod shape;
 pub mod texture;
 
 pub use emitter::{Emitter, EmitterShape, PlacedLight};
 pub use hit::{Hit, SurfacePoint};
 
+use aggregate::Aggregate;
+use query::Query;
+use shape::LocalRay;
+
 use crate::diag::{Diagnostic, Span};
 use crate::math::Aabb;
-use crate::scene::assets::Loader;
+use crate::scene::assets::{AssetCache, Loader};
 use crate::scene::{Accelerator, Material, Node, Rgb};
 use glam::DVec3;
 use std::sync::Arc;
@@ -97,6 +104,9 @@ pub struct World {
     pub lights: Vec<PlacedLight>,
     /// Surfaces that emit: the objects of area lights, and objects whose material has `emit`.
     pub emitters: Vec<Emitter>,
+    /// The first is the scene itself, the others are what is placed in it.
+    aggregates: Vec<Aggregate>,
+    materials: Vec<Arc<Material>>,
 }
 
 /// A factor per colour channel.
@@ -105,39 +115,54 @@ pub type Transmittance = Rgb;
 impl World {
     /// Flattens a scene's nodes (taking them, so that each is freed as it goes), reads the meshes they place, and builds the trees.
     pub fn new(nodes: Vec<Node>, options: &WorldOptions, loader: &dyn Loader) -> (World, Vec<Diagnostic>) {
-        let _ = (nodes, options, loader);
-        (World { lights: Vec::new(), emitters: Vec::new() }, Vec::new())
+        World::with_assets(nodes, options, &AssetCache::new(loader))
+    }
+
+    /// The same with files that were perhaps read before, for the frames of an animation.
+    pub fn with_assets(
+        nodes: Vec<Node>,
+        options: &WorldOptions,
+        assets: &AssetCache<'_>,
+    ) -> (World, Vec<Diagnostic>) {
+        lower::lower(nodes, options, assets)
     }
 
     /// The first thing a ray meets, before `t_max`, that is not hidden from it.
     pub fn closest(&self, ray: &Ray) -> Option<Hit<'_>> {
-        let _ = ray;
-        None
+        let (local, per_world) = LocalRay::new(ray.origin, ray.direction)?;
+        let found = Query::run(self, &local, 1.0, last_before(ray.t_max) * per_world, ray.kind, false)?;
+        self.finish(&local, found.t / per_world, &found)
     }
 
     /// Whether anything at all stands between the ray's origin and its `t_max`, transparent or not.
     pub fn occluded(&self, ray: &Ray) -> bool {
-        let _ = ray;
-        false
+        LocalRay::new(ray.origin, ray.direction).is_some_and(|(local, per_world)| {
+            Query::run(self, &local, 1.0, last_before(ray.t_max) * per_world, ray.kind, true).is_some()
+        })
     }
 
     /// What is left of the light along a shadow ray. `passes` says what share each surface on the way lets through (0 for most);
     /// it is asked in order until nothing is left.
     pub fn transmittance(&self, ray: &Ray, passes: impl Fn(&Hit<'_>) -> Rgb) -> Transmittance {
-        let _ = (ray, passes);
-        Rgb::ONE
-    }
-
-    /// Where a primitive came from.
-    pub fn provenance(&self, primitive: PrimitiveId) -> Option<Provenance> {
-        let _ = primitive;
-        None
+        let (mut left, mut ray) = (Rgb::ONE, *ray);
+        while let Some(hit) = self.closest(&ray) {
+            left *= passes(&hit);
+            let next = hit.spawn(ray.direction, ray.kind);
+            let t_max = ray.t_max - hit.t;
+            if left == Rgb::ZERO || t_max <= 0.0 || next.origin == ray.origin {
+                break;
+            }
+            ray = Ray { t_max, ..next };
+        }
+        left
     }
 
     /// The index in `emitters` of the emitter that a primitive is part of.
     pub fn emitter_of(&self, primitive: PrimitiveId) -> Option<usize> {
-        let _ = primitive;
-        None
+        let place = |p: PrimitiveId| (p.instance, p.shape);
+        let first = self.emitters.partition_point(|e| place(e.primitive) < place(primitive));
+        let same = self.emitters[first..].iter().take_while(|e| place(e.primitive) == place(primitive));
+        same.enumerate().find(|(_, e)| e.shape.has_part(primitive.part)).map(|(i, _)| first + i)
     }
 
     /// Whether a primitive that emits does so from both sides: one of a closed solid.
@@ -147,16 +172,33 @@ impl World {
 
     /// The box around all bounded shapes; empty for none.
     pub fn bounds(&self) -> Aabb {
-        Aabb::EMPTY
+        self.aggregates[0].tree().bounds()
     }
 
     /// Every material that a hit may report, each once.
     pub fn materials(&self) -> &[Arc<Material>] {
-        &[]
+        &self.materials
     }
 
     /// What was made.
     pub fn stats(&self) -> WorldStats {
-        WorldStats::default()
+        let mut stats = WorldStats::default();
+        for aggregate in &self.aggregates {
+            match aggregate {
+                Aggregate::Group(group) => {
+                    stats.shapes += (group.items.len() - group.instances.len()) as u64;
+                    stats.instances += group.instances.len() as u64;
+                }
+                Aggregate::Mesh(mesh) => stats.triangles += mesh.shape.mesh.triangles.len() as u64,
+            }
+            stats.trees += u64::from(aggregate.tree().node_count() > 0);
+            stats.tree_nodes += aggregate.tree().node_count() as u64;
+        }
+        stats
     }
+}
+
+/// The largest distance below one, finite.
+fn last_before(t_max: f64) -> f64 {
+    t_max.next_down()
 }

@@ -12,6 +12,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("lang", &["scene", "geometry", "math", "syntax", "diag"]),
     ("world", &["scene", "geometry", "math", "diag"]),
     ("render", &["world", "scene", "math", "diag"]),
+    ("report", &["render", "world", "scene", "geometry", "math"]),
     ("session", &["render", "world", "lang", "scene", "geometry", "math", "syntax", "diag"]),
 ];
 

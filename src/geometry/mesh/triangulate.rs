@@ -33,20 +33,34 @@ impl Triangulator {
         &self.triangles
     }
 
+    /// Seen along an axis first, which is exact; a polygon that is bent can overlap itself there, and is then seen along its
+    /// mean normal too, and the finer cut taken.
     fn clip_ears(&mut self) {
         let normal = newell(&self.points);
+        self.clip_ears_seen_by(|p| along_axis(p, normal));
+        let wanted = self.points.len() - 2;
+        if self.triangles.len() < wanted && normal.is_finite() && normal != DVec3::ZERO {
+            let along_axis = std::mem::take(&mut self.triangles);
+            let (u, v) = normal.normalize_or(DVec3::Z).any_orthonormal_pair();
+            self.clip_ears_seen_by(|p| [p.dot(u), p.dot(v)]);
+            if self.triangles.len() <= along_axis.len() {
+                self.triangles = along_axis;
+            }
+        }
+        if self.triangles.is_empty() {
+            self.triangles.extend((2..self.points.len() as u32).map(|i| [0, i - 1, i]));
+        }
+    }
+
+    fn clip_ears_seen_by(&mut self, flatten: impl Fn(DVec3) -> [f64; 2]) {
         self.flat.clear();
-        self.flat.extend(self.points.iter().map(|p| flatten(*p - self.points[0], normal)));
+        self.flat.extend(self.points.iter().map(|p| flatten(*p - self.points[0])));
         self.earcut.earcut_slice(&self.flat, &[], &mut self.indices);
         for t in self.indices.chunks_exact(3) {
             let turns_right = cross(self.flat_triangle([t[0], t[1], t[2]])) < 0.0;
             self.triangles.push(if turns_right { [t[0], t[2], t[1]] } else { [t[0], t[1], t[2]] });
         }
-        if self.triangles.is_empty() {
-            self.triangles.extend((2..self.points.len() as u32).map(|i| [0, i - 1, i]));
-        } else {
-            self.put_back_dropped_corners();
-        }
+        self.put_back_dropped_corners();
     }
 
     /// Ear clipping drops corners in the middle of straight edges; without them a neighbour's edge would only touch this one.
@@ -106,7 +120,7 @@ fn newell(points: &[DVec3]) -> DVec3 {
 }
 
 /// The two coordinates that are seen along the largest component of the normal, such that the polygon turns left.
-fn flatten(p: DVec3, normal: DVec3) -> [f64; 2] {
+fn along_axis(p: DVec3, normal: DVec3) -> [f64; 2] {
     let size = normal.abs();
     let (u, v, along) = if size.x >= size.y && size.x >= size.z {
         (p.y, p.z, normal.x)

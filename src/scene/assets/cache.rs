@@ -2,6 +2,8 @@
 
 use super::Loader;
 use super::image::{Image, ImageError};
+use super::obj::{LoadedMesh, load_obj};
+use crate::diag::{Diagnostic, Span};
 use std::collections::HashMap;
 use std::io;
 use std::path::{Path, PathBuf};
@@ -30,18 +32,20 @@ impl AssetError {
     }
 }
 
-type Slot<T> = Arc<OnceLock<Result<Arc<T>, AssetError>>>;
+type Slot<T, E> = Arc<OnceLock<Result<Arc<T>, E>>>;
+type Slots<K, T, E> = Mutex<HashMap<K, Slot<T, E>>>;
 
-/// The pictures of a run by their path. What is asked for twice is read once; who comes second waits for the first.
+/// The pictures and meshes of a run by their path. What is asked for twice is read once; who comes second waits for the first.
 pub struct AssetCache<'a> {
     loader: &'a dyn Loader,
-    images: Mutex<HashMap<PathBuf, Slot<Image>>>,
+    images: Slots<PathBuf, Image, AssetError>,
+    meshes: Slots<(PathBuf, Option<bool>), LoadedMesh, Box<Diagnostic>>,
 }
 
 impl<'a> AssetCache<'a> {
     /// An empty cache over a loader.
     pub fn new(loader: &'a dyn Loader) -> Self {
-        AssetCache { loader, images: Mutex::default() }
+        AssetCache { loader, images: Mutex::default(), meshes: Mutex::default() }
     }
 
     /// The way files are read.
@@ -56,10 +60,23 @@ impl<'a> AssetCache<'a> {
 
     /// A picture.
     pub fn image(&self, path: &Path) -> Result<Arc<Image>, AssetError> {
-        let slot = {
-            let mut images = self.images.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
-            Arc::clone(images.entry(path.to_owned()).or_default())
-        };
+        let slot = slot(&self.images, path.to_owned());
         slot.get_or_init(|| Ok(Arc::new(Image::decode(&self.read(path)?, path)?))).clone()
     }
+
+    /// A mesh by [`load_obj`]. Diagnostics, and the materials of its file, have the place of whoever asked first.
+    pub fn mesh(
+        &self,
+        path: &Path,
+        smooth: Option<bool>,
+        span: Span,
+    ) -> Result<Arc<LoadedMesh>, Box<Diagnostic>> {
+        let slot = slot(&self.meshes, (path.to_owned(), smooth));
+        slot.get_or_init(|| load_obj(self, path, smooth, span).map(Arc::new)).clone()
+    }
+}
+
+fn slot<K: std::hash::Hash + Eq, T, E>(slots: &Slots<K, T, E>, key: K) -> Slot<T, E> {
+    let mut slots = slots.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
+    Arc::clone(slots.entry(key).or_default())
 }

@@ -1,7 +1,10 @@
 //! Files that scenes name: read through a [`Loader`], decoded into plain data, each once.
 
 mod cache;
+mod decode;
 pub mod image;
+mod mtl;
+pub mod obj;
 
 pub use cache::{AssetCache, AssetError};
 
@@ -13,6 +16,12 @@ pub trait Loader: Send + Sync {
     fn read(&self, path: &Path) -> std::io::Result<Vec<u8>>;
     /// Whether it could be read, without reading it.
     fn exists(&self, path: &Path) -> bool;
+    /// The names in a folder, sorted; none where it cannot be read or listing is not offered. Finds files whose name was
+    /// written in another case.
+    fn list(&self, folder: &Path) -> Vec<String> {
+        let _ = folder;
+        Vec::new()
+    }
 }
 
 /// Files of the machine.
@@ -26,5 +35,13 @@ impl Loader for DiskLoader {
 
     fn exists(&self, path: &Path) -> bool {
         path.is_file()
+    }
+
+    fn list(&self, folder: &Path) -> Vec<String> {
+        let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
+        let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
+        let mut names: Vec<String> = entries.filter_map(|e| e.file_name().into_string().ok()).collect();
+        names.sort_unstable();
+        names
     }
 }

@@ -80,7 +80,9 @@ impl<'a> Builder<'a> {
         let components: Vec<Expr> = tokens.map(|component| self.component(component)).collect();
         if !(2..=4).contains(&n) {
             let said = format!("a vector has 2 to 4 components; this one has {n}");
-            self.report(Diagnostic::new(Code::Syntax, span, said).hint("a list of any length is written `[a, b, …]`"));
+            self.report(
+                Diagnostic::new(Code::Syntax, span, said).hint("a list of any length is written `[a, b, …]`"),
+            );
             return ExprKind::Bad;
         }
         ExprKind::Vector(components)
@@ -92,7 +94,9 @@ impl<'a> Builder<'a> {
         if tokens.len() == 1 {
             return self.primary(tokens.next().expect("it has one pair"));
         }
-        for operator in tokens.clone().filter(|t| matches!(t.as_rule(), Rule::arithmetic | Rule::arithmetic_next_line)) {
+        for operator in
+            tokens.clone().filter(|t| matches!(t.as_rule(), Rule::arithmetic | Rule::arithmetic_next_line))
+        {
             self.lopsided_sign(&operator);
         }
         self.flat(tokens, span)
@@ -163,8 +167,12 @@ impl<'a> Builder<'a> {
             let argument = self.argument(token);
             if named && argument.name.is_none() {
                 self.report(
-                    Diagnostic::new(Code::Syntax, argument.value.span, "an unnamed argument follows a named one")
-                        .hint("move it to the front, or name it too"),
+                    Diagnostic::new(
+                        Code::Syntax,
+                        argument.value.span,
+                        "an unnamed argument follows a named one",
+                    )
+                    .hint("move it to the front, or name it too"),
                 );
             }
             named |= argument.name.is_some();

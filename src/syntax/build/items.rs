@@ -6,8 +6,8 @@ use pest::iterators::{Pair, Pairs};
 use super::{Grammar, KEYWORDS, KINDS, Origin, Rule};
 use crate::diag::{Code, Diagnostic, Span};
 use crate::syntax::ast::{
-    Block, Body, Expr, ExprKind, For, Function, Ident, If, Import, Item, ItemKind, Parameter, Property, While,
-    With,
+    Block, Body, Expr, ExprKind, For, Function, Ident, If, Import, Item, ItemKind, Parameter, Property,
+    While, With,
 };
 
 /// Where pest gave up, in bytes of the text it was given, and whether that was for want of stack.
@@ -130,7 +130,12 @@ impl<'a> Builder<'a> {
     }
 
     /// Builds some levels deeper; `None`, with a diagnostic, past the limit.
-    pub fn nested_by<T>(&mut self, levels: usize, span: Span, build: impl FnOnce(&mut Self) -> T) -> Option<T> {
+    pub fn nested_by<T>(
+        &mut self,
+        levels: usize,
+        span: Span,
+        build: impl FnOnce(&mut Self) -> T,
+    ) -> Option<T> {
         if self.depth + levels > self.origin.limits.depth {
             self.report(too_deep(span, self.origin.limits.depth));
             return None;
@@ -191,10 +196,9 @@ impl<'a> Builder<'a> {
     fn block_item(&mut self, word: &Token<'a>, mut tokens: Pairs<'a, Rule>) -> ItemKind {
         let kind = self.ident(word);
         let label = match tokens.peek().map(|t| t.as_rule()) {
-            Some(Rule::label) => tokens
-                .next()
-                .and_then(|label| label.into_inner().next())
-                .map(|word| self.binding(word)),
+            Some(Rule::label) => {
+                tokens.next().and_then(|label| label.into_inner().next()).map(|word| self.binding(word))
+            }
             _ => None,
         };
         let body = tokens.next().expect("a block has a body");
@@ -211,8 +215,12 @@ impl<'a> Builder<'a> {
         if let Some(label) = &block.label {
             let said = "a labelled block cannot be changed where it stands";
             self.report(
-                Diagnostic::new(Code::Syntax, self.span_of(body_end, body_end).to(label.span), said)
-                    .hint(format!("end the block here and write `{} with {{ … }}` as an item of its own", label.name)),
+                Diagnostic::new(Code::Syntax, self.span_of(body_end, body_end).to(label.span), said).hint(
+                    format!(
+                        "end the block here and write `{} with {{ … }}` as an item of its own",
+                        label.name
+                    ),
+                ),
             );
         }
         let span = self.span_of(word.as_span().start(), body_end);
@@ -278,7 +286,9 @@ impl<'a> Builder<'a> {
             if otherwise.is_some() {
                 self.report(
                     Diagnostic::new(Code::Syntax, self.span(&token), "a branch follows the last `else`")
-                        .hint("only one plain `else` may end an `if`; write `else if` for the ones before it"),
+                        .hint(
+                            "only one plain `else` may end an `if`; write `else if` for the ones before it",
+                        ),
                 );
                 break;
             }
@@ -356,17 +366,18 @@ pub(super) fn too_deep(span: Span, limit: usize) -> Diagnostic {
 
 fn reserved(ident: &Ident) -> Diagnostic {
     let what = if is_kind(&ident.name) { "the name of a kind" } else { "a word of the language" };
-    Diagnostic::new(Code::ReservedName, ident.span, format!("`{}` is {what} and cannot be a name", ident.name))
-        .hint(format!("choose another, such as `my_{}`", ident.name))
+    Diagnostic::new(
+        Code::ReservedName,
+        ident.span,
+        format!("`{}` is {what} and cannot be a name", ident.name),
+    )
+    .hint(format!("choose another, such as `my_{}`", ident.name))
 }
 
 fn unknown_kind(kind: &Ident, label: Option<&Ident>) -> Diagnostic {
-    let found = Diagnostic::new(
-        Code::UnknownKind,
-        kind.span,
-        format!("no block is of the kind `{}`", kind.name),
-    )
-    .label("a word before `{` must be a kind");
+    let found =
+        Diagnostic::new(Code::UnknownKind, kind.span, format!("no block is of the kind `{}`", kind.name))
+            .label("a word before `{` must be a kind");
     match crate::diag::nearest(&kind.name, KINDS.iter().copied()) {
         Some(near) => found.hint(format!("did you mean `{near}`?")),
         None if label.is_some() => found,

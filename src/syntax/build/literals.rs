@@ -1,6 +1,5 @@
 //! Numbers, vectors of numbers, colours and texts, decoded from their characters.
 
-
 use super::items::{Builder, Token};
 use crate::diag::{Code, Diagnostic, Span};
 use crate::syntax::ast::{ExprKind, TextPart};
@@ -34,7 +33,8 @@ impl<'a> Builder<'a> {
         if value.is_none() {
             let said = format!("`{}` is too large for a number", shorten(digits));
             self.report(
-                Diagnostic::new(Code::BadNumber, span, said).hint("the largest is about 1.8e308; infinity is `inf`"),
+                Diagnostic::new(Code::BadNumber, span, said)
+                    .hint("the largest is about 1.8e308; infinity is `inf`"),
             );
         }
         value
@@ -42,7 +42,8 @@ impl<'a> Builder<'a> {
 
     /// `#c31`, `#cc3311`.
     pub fn colour(&mut self, token: &Token<'a>, span: Span) -> ExprKind {
-        let digits: Vec<u8> = token.as_str()[1..].chars().filter_map(|c| c.to_digit(16)).map(|d| d as u8).collect();
+        let digits: Vec<u8> =
+            token.as_str()[1..].chars().filter_map(|c| c.to_digit(16)).map(|d| d as u8).collect();
         match digits.as_slice() {
             [r, g, b] => ExprKind::Colour([r * 17, g * 17, b * 17]),
             [r, s, g, h, b, c] => ExprKind::Colour([r * 16 + s, g * 16 + h, b * 16 + c]),
@@ -154,4 +155,3 @@ fn shorten(digits: &str) -> String {
         n => format!("{}…{}", &digits[..10], &digits[n - 8..]),
     }
 }
-

@@ -54,9 +54,8 @@ pub const KINDS: &[&str] = &[
 ];
 
 /// The words that bind a program together; like the kinds, no name may be one.
-pub const KEYWORDS: &[&str] = &[
-    "let", "var", "fn", "return", "if", "else", "for", "in", "while", "import", "with", "true", "false",
-];
+pub const KEYWORDS: &[&str] =
+    &["let", "var", "fn", "return", "if", "else", "for", "in", "while", "import", "with", "true", "false"];
 
 /// Guards of the parser.
 #[derive(Clone, Copy, Debug)]
@@ -139,10 +138,8 @@ fn parse_repaired(source: SourceId, text: &str, limits: ParseLimits) -> (Vec<ast
     let repaired = repair::repair(source, text, limits.depth);
     let origin = Origin { source, text, limits, insertions: &repaired.insertions };
     let Some(cuts) = outline::outline(&repaired.text, limits.depth) else {
-        let bad = ast::Item {
-            kind: ast::ItemKind::Bad { defines: None },
-            span: Span::new(source, 0, text.len()),
-        };
+        let bad =
+            ast::Item { kind: ast::ItemKind::Bad { defines: None }, span: Span::new(source, 0, text.len()) };
         return (vec![bad], repaired.found);
     };
     let (items, mut found) = parse_runs(&repaired.text, &cuts, &origin);
@@ -154,11 +151,8 @@ fn parse_repaired(source: SourceId, text: &str, limits: ParseLimits) -> (Vec<ast
 fn parse_runs(text: &str, cuts: &[u32], origin: &Origin<'_>) -> (Vec<ast::Item>, Vec<Diagnostic>) {
     let runs = runs(text.len(), cuts);
     let parse = |run: &(usize, usize)| parse_run(text, *run, cuts, origin);
-    let parsed: Vec<_> = if runs.len() < 4 {
-        runs.iter().map(parse).collect()
-    } else {
-        runs.par_iter().map(parse).collect()
-    };
+    let parsed: Vec<_> =
+        if runs.len() < 4 { runs.iter().map(parse).collect() } else { runs.par_iter().map(parse).collect() };
     let mut items = Vec::with_capacity(parsed.iter().map(|(items, _)| items.len()).sum());
     let mut found = Vec::new();
     for (run_items, run_found) in parsed {

@@ -8,7 +8,7 @@ use pest::iterators::Pairs;
 use super::Rule;
 use super::items::{Builder, Token};
 use crate::diag::{Code, Diagnostic, Span};
-use crate::syntax::ast::{BinaryOp, Expr, ExprKind, Parameter, Lambda, RangeExpr, UnaryOp};
+use crate::syntax::ast::{BinaryOp, Expr, ExprKind, Lambda, Parameter, RangeExpr, UnaryOp};
 
 /// The operands and operators of one expression, in order.
 pub(super) type Flat<'a> = Peekable<Pairs<'a, Rule>>;
@@ -151,8 +151,9 @@ impl<'a> Builder<'a> {
                     parameters.push(Parameter { name: self.binding(name), default: None });
                 }
                 _ => self.report(
-                    Diagnostic::new(Code::Syntax, span, "a parameter before `=>` is a plain name")
-                        .hint("write `(u, v) => …`; a function with defaults is an item, `fn f(a, b = 2) = …`"),
+                    Diagnostic::new(Code::Syntax, span, "a parameter before `=>` is a plain name").hint(
+                        "write `(u, v) => …`; a function with defaults is an item, `fn f(a, b = 2) = …`",
+                    ),
                 ),
             }
         }
@@ -195,8 +196,8 @@ impl<'a> Builder<'a> {
             return Expr { kind: ExprKind::Unary(op, Box::new(operand)), span };
         }
         let mut value = self.primary(token);
-        while let Some(token) =
-            tokens.next_if(|t| matches!(t.as_rule(), Rule::call | Rule::index | Rule::field | Rule::with_body))
+        while let Some(token) = tokens
+            .next_if(|t| matches!(t.as_rule(), Rule::call | Rule::index | Rule::field | Rule::with_body))
         {
             value = self.postfix(value, token);
         }

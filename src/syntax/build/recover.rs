@@ -1,15 +1,18 @@
 //! stub
 use super::Origin;
-use crate::diag::{Diagnostic, Code};
+use super::items::Failure;
+use super::{Grammar, Rule};
+use crate::diag::{Code, Diagnostic};
 use crate::syntax::ast::{Expr, Item, ItemKind};
 use pest::Parser;
-use super::{Grammar, Rule};
-use super::items::Failure;
 
 pub(super) fn items(text: &str, base: usize, origin: &Origin<'_>) -> (Vec<Item>, Vec<Diagnostic>) {
     let e = Grammar::parse(Rule::file, text).map_err(Failure::of).err().unwrap();
     let span = origin.span(base + e.at, base + e.at);
-    (vec![Item { kind: ItemKind::Bad { defines: None }, span }], vec![Diagnostic::new(Code::Syntax, span, "this cannot be read")])
+    (
+        vec![Item { kind: ItemKind::Bad { defines: None }, span }],
+        vec![Diagnostic::new(Code::Syntax, span, "this cannot be read")],
+    )
 }
 pub(super) fn expression(text: &str, origin: &Origin<'_>) -> (Option<Expr>, Vec<Diagnostic>) {
     let mut pairs = match Grammar::parse(Rule::one_expression, text).map_err(Failure::of) {

@@ -10,12 +10,16 @@ pub mod fmt;
 pub mod inspect;
 pub mod render;
 pub mod shell;
+pub mod stats;
 pub mod test;
 
 use crate::args::{Evaluation, LimitName};
 use crate::speech::{Failure, reason, tell};
+use ogee::diag::{Code, Diagnostic, SourceMap};
 use ogee::scene::assets::DiskLoader;
-use ogee::session::{Evaluated, Options, Session};
+use ogee::session::{Evaluated, Limits, Options, Session};
+use ogee::syntax::ast::File;
+use ogee::syntax::build::{ParseLimits, parse_file};
 use std::io::Read;
 use std::path::Path;
 use std::sync::Arc;
@@ -88,4 +92,29 @@ fn nearest_file(file: &Path) -> Option<std::path::PathBuf> {
     let wanted = file.file_name()?.to_str()?;
     let near = ogee::diag::nearest(wanted, names.iter().map(String::as_str))?;
     Some(folder.join(near))
+}
+
+/// A file as it was read: its tree, whole or in part, and the faults of its text.
+struct Parsed {
+    sources: SourceMap,
+    tree: File,
+    diagnostics: Vec<Diagnostic>,
+}
+
+/// Reads the syntax tree of a file, imports left alone.
+fn parsed(file: &Path, limits: Limits) -> Result<Parsed, Failure> {
+    let mut sources = SourceMap::default();
+    let name = if file == Path::new("-") { "<stdin>".into() } else { file.display().to_string() };
+    let (text, mut diagnostics) = match String::from_utf8(read(file)?) {
+        Ok(text) => (text, Vec::new()),
+        Err(error) => {
+            let at = error.utf8_error().valid_up_to();
+            let message = format!("{name} is not UTF-8 text: byte {at} begins no character");
+            (String::new(), vec![Diagnostic::new(Code::NotUtf8, None, message)])
+        }
+    };
+    let id = sources.add(name, text.as_str());
+    let (tree, found) = parse_file(id, &text, ParseLimits { depth: limits.nesting });
+    diagnostics.extend(found);
+    Ok(Parsed { sources, tree, diagnostics })
 }

@@ -1,0 +1,114 @@
+//! What is told of a picture that was made: a line for a person, an object for a program.
+
+use super::render::Stopwatch;
+use ogee::render::film::Film;
+use ogee::render::settings::ResolvedSettings;
+use ogee::session::inspect::{accelerator_word, tracer_word};
+use ogee::session::picture::Prepared;
+use std::path::Path;
+
+/// How long each part took.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Seconds {
+    /// Reading, parsing and evaluating the scene.
+    pub evaluate: Stopwatch,
+    /// Files, shapes, trees.
+    pub world: Stopwatch,
+    /// Rays.
+    pub render: Stopwatch,
+    /// Encoding and writing.
+    pub write: Stopwatch,
+}
+
+impl Seconds {
+    fn total(&self) -> f64 {
+        self.evaluate.0 + self.world.0 + self.render.0 + self.write.0
+    }
+}
+
+/// "first.png  640×480  0.41 s  4 samples a pixel  3.1 M rays".
+pub fn line(name: &str, film: &Film, settings: &ResolvedSettings, seconds: &Seconds) -> String {
+    let name = if name == "-" { "picture" } else { name };
+    let [w, h] = [settings.crop.width, settings.crop.height];
+    let samples = match settings.samples {
+        1 => "1 sample a pixel".to_owned(),
+        n => format!("{n} samples a pixel"),
+    };
+    let rays = count(film.report.rays.total());
+    let part = match film.is_complete() {
+        true => String::new(),
+        false => format!("  ({:.0} % done when interrupted)", 100.0 * film.share_finished()),
+    };
+    format!("{name}  {w}×{h}  {}  {samples}  {rays} rays{part}", duration(seconds.total()))
+}
+
+/// "950", "3.1 k", "12 M".
+fn count(n: u64) -> String {
+    let scaled = |unit: f64, word: &str| {
+        let x = n as f64 / unit;
+        if x < 10.0 { format!("{x:.1} {word}") } else { format!("{x:.0} {word}") }
+    };
+    match n {
+        0..1_000 => n.to_string(),
+        1_000..1_000_000 => scaled(1e3, "k"),
+        1_000_000..1_000_000_000 => scaled(1e6, "M"),
+        _ => scaled(1e9, "G"),
+    }
+}
+
+/// "12 ms", "0.41 s", "3 min 12 s".
+fn duration(seconds: f64) -> String {
+    match seconds {
+        s if s < 0.1 => format!("{:.0} ms", 1e3 * s),
+        s if s < 10.0 => format!("{s:.2} s"),
+        s if s < 120.0 => format!("{s:.0} s"),
+        s => format!("{:.0} min {:.0} s", (s / 60.0).floor(), s % 60.0),
+    }
+}
+
+/// One object; its keys are described in `docs/command.md`.
+pub fn json(scene: &Path, output: &str, film: &Film, prepared: &Prepared, seconds: &Seconds) -> String {
+    let settings = &prepared.settings;
+    let rays = film.report.rays;
+    let object = serde_json::json!({
+        "schema": 1,
+        "scene": scene.display().to_string(),
+        "output": output,
+        "size": settings.size,
+        "crop": [settings.crop.x, settings.crop.y, settings.crop.width, settings.crop.height],
+        "tracer": tracer_word(settings.tracer),
+        "accelerator": accelerator_word(settings.accelerator),
+        "samples": settings.samples,
+        "depth": settings.depth,
+        "seed": settings.seed,
+        "finished": film.share_finished(),
+        "seconds": {
+            "evaluate": seconds.evaluate.0,
+            "world": seconds.world.0,
+            "render": seconds.render.0,
+            "write": seconds.write.0,
+            "total": seconds.total(),
+        },
+        "rays": {
+            "camera": rays.camera,
+            "shadow": rays.shadow,
+            "reflected": rays.reflected,
+            "refracted": rays.refracted,
+            "total": rays.total(),
+        },
+        "world": prepared.world.stats(),
+        "samples_left_out": film.report.non_finite,
+    });
+    format!("{object}\n")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn counts_and_times_are_short() {
+        assert_eq!([count(950), count(3_140), count(12_345_678)], ["950", "3.1 k", "12 M"]);
+        assert_eq!([duration(0.012), duration(0.41), duration(192.0)], ["12 ms", "0.41 s", "3 min 12 s"]);
+    }
+}

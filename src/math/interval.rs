@@ -1,0 +1,397 @@
+//! Intervals that hold every value a computation can have: f64 ends, rounded outward after each operation.
+//!
+//! The hardware rounds to nearest, so an end is moved outward by one step of the floating-point grid; functions of
+//! [`super::elementary`] are within 1 ulp of the truth and are moved by two. An operation outside its domain gives the
+//! part of its range that is defined and says so by [`Interval::partial`]; where nothing is defined, [`Interval::EMPTY`].
+
+use super::elementary::{cos, exp, ln, powf, sin};
+use std::f64::consts::{FRAC_PI_2, PI};
+use std::ops::{Add, Div, Mul, Neg, Sub};
+
+/// A closed interval `lo … hi`; empty where `lo > hi`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Interval {
+    /// Lower end.
+    pub lo: f64,
+    /// Upper end.
+    pub hi: f64,
+    /// The function was undefined, or jumped, somewhere in the arguments.
+    pub partial: bool,
+}
+
+/// One step of the floating-point grid down; −∞ stays.
+fn down(x: f64) -> f64 {
+    x.next_down()
+}
+
+/// One step of the floating-point grid up; ∞ stays.
+fn up(x: f64) -> f64 {
+    x.next_up()
+}
+
+impl Interval {
+    /// No value at all.
+    pub const EMPTY: Interval = Interval { lo: f64::INFINITY, hi: f64::NEG_INFINITY, partial: true };
+    /// Any number.
+    pub const WHOLE: Interval = Interval { lo: f64::NEG_INFINITY, hi: f64::INFINITY, partial: false };
+
+    /// `lo … hi`, exactly.
+    pub const fn new(lo: f64, hi: f64) -> Interval {
+        Interval { lo, hi, partial: false }
+    }
+
+    /// A single number.
+    pub const fn point(x: f64) -> Interval {
+        Interval::new(x, x)
+    }
+
+    /// True for no value at all (or NaN ends).
+    pub fn is_empty(self) -> bool {
+        !(self.lo <= self.hi)
+    }
+
+    /// True where `x` is a value.
+    pub fn contains(self, x: f64) -> bool {
+        self.lo <= x && x <= self.hi
+    }
+
+    /// Upper minus lower end, rounded up.
+    pub fn width(self) -> f64 {
+        up(self.hi - self.lo)
+    }
+
+    /// A number near the middle, inside.
+    pub fn middle(self) -> f64 {
+        (self.lo / 2.0 + self.hi / 2.0).clamp(self.lo, self.hi)
+    }
+
+    /// The smallest interval around both.
+    #[must_use]
+    pub fn hull(self, other: Interval) -> Interval {
+        let partial = self.partial || other.partial;
+        match (self.is_empty(), other.is_empty()) {
+            (true, _) => Interval { partial, ..other },
+            (_, true) => Interval { partial, ..self },
+            _ => Interval { lo: self.lo.min(other.lo), hi: self.hi.max(other.hi), partial },
+        }
+    }
+
+    /// What both hold.
+    #[must_use]
+    pub fn intersect(self, other: Interval) -> Interval {
+        Interval {
+            lo: self.lo.max(other.lo),
+            hi: self.hi.min(other.hi),
+            partial: self.partial || other.partial,
+        }
+    }
+
+    /// The same values, known to be undefined somewhere.
+    #[must_use]
+    pub fn with_partial(self, partial: bool) -> Interval {
+        Interval { partial: self.partial || partial, ..self }
+    }
+
+    /// Ends moved outward by two steps, for functions within 1 ulp.
+    fn outward(lo: f64, hi: f64, partial: bool) -> Interval {
+        Interval { lo: down(down(lo)), hi: up(up(hi)), partial }
+    }
+
+    /// |x|.
+    #[must_use]
+    pub fn abs(self) -> Interval {
+        if self.lo >= 0.0 {
+            self
+        } else if self.hi <= 0.0 {
+            -self
+        } else {
+            Interval { lo: 0.0, hi: self.hi.max(-self.lo), partial: self.partial }
+        }
+    }
+
+    /// x², tighter than x·x.
+    #[must_use]
+    pub fn square(self) -> Interval {
+        let a = self.abs();
+        Interval { lo: down(a.lo * a.lo).max(0.0), hi: up(a.hi * a.hi), partial: self.partial }
+    }
+
+    /// √x.
+    #[must_use]
+    pub fn sqrt(self) -> Interval {
+        if self.is_empty() || self.hi < 0.0 {
+            return Interval::EMPTY;
+        }
+        let lo = if self.lo <= 0.0 { 0.0 } else { down(self.lo.sqrt()).max(0.0) };
+        Interval { lo, hi: up(self.hi.sqrt()), partial: self.partial || self.lo < 0.0 }
+    }
+
+    /// eˣ.
+    #[must_use]
+    pub fn exp(self) -> Interval {
+        let wide = Interval::outward(exp(self.lo), exp(self.hi), self.partial);
+        Interval { lo: wide.lo.max(0.0), ..wide }
+    }
+
+    /// Natural logarithm.
+    #[must_use]
+    pub fn ln(self) -> Interval {
+        if self.is_empty() || self.hi <= 0.0 {
+            return Interval::EMPTY;
+        }
+        let lo = if self.lo <= 0.0 { f64::NEG_INFINITY } else { ln(self.lo) };
+        Interval::outward(lo, ln(self.hi), self.partial || self.lo <= 0.0)
+    }
+
+    /// A function that grows everywhere and is within 1 ulp.
+    #[must_use]
+    pub fn monotone(self, f: fn(f64) -> f64) -> Interval {
+        Interval::outward(f(self.lo), f(self.hi), self.partial)
+    }
+
+    /// Sine of radians.
+    #[must_use]
+    pub fn sin(self) -> Interval {
+        (self - Interval { lo: down(FRAC_PI_2), hi: up(FRAC_PI_2), partial: false }).cos_like(self, sin)
+    }
+
+    /// Cosine of radians.
+    #[must_use]
+    pub fn cos(self) -> Interval {
+        self.cos_like(self, cos)
+    }
+
+    /// The range of cos over `self`, whose end values are `f` of the ends of `argument`.
+    fn cos_like(self, argument: Interval, f: fn(f64) -> f64) -> Interval {
+        // Past 2^45 the grid of multiples of π is coarser than the test below can tell apart.
+        const LARGE: f64 = (1u64 << 45) as f64;
+        if self.is_empty() {
+            return Interval::EMPTY;
+        }
+        if !(self.width() < 2.0 * PI) || self.lo.abs().max(self.hi.abs()) > LARGE {
+            return Interval { lo: -1.0, hi: 1.0, partial: self.partial };
+        }
+        // Multiples of π inside, tested with ends moved outward by what k·π is off: a crest too many is only loose.
+        let slack = (self.lo.abs().max(self.hi.abs()) + 1.0) * 4.0 * f64::EPSILON;
+        let first = ((self.lo - slack) / PI).ceil();
+        let last = ((self.hi + slack) / PI).floor();
+        let (a, b) = (f(argument.lo), f(argument.hi));
+        let mut range = Interval::outward(a.min(b), a.max(b), self.partial);
+        let mut k = first;
+        while k <= last {
+            if k.rem_euclid(2.0) == 0.0 {
+                range.hi = 1.0
+            } else {
+                range.lo = -1.0
+            }
+            k += 1.0;
+        }
+        Interval { lo: range.lo.max(-1.0), hi: range.hi.min(1.0), partial: self.partial }
+    }
+
+    /// Tangent of radians; everything where a pole may lie inside.
+    #[must_use]
+    pub fn tan(self) -> Interval {
+        self.sin() / self.cos()
+    }
+
+    /// xⁿ for a whole n.
+    #[must_use]
+    pub fn powi(self, n: i32) -> Interval {
+        match n {
+            0 => Interval::point(1.0).with_partial(self.partial),
+            1 => self,
+            2 => self.square(),
+            n if n < 0 => Interval::point(1.0) / self.powi(-n),
+            n => {
+                let base = if n % 2 == 0 { self.abs() } else { self };
+                Interval::outward(powf(base.lo, f64::from(n)), powf(base.hi, f64::from(n)), self.partial)
+            }
+        }
+    }
+
+    /// xʸ: whole constant powers for any base, others for bases that are not negative.
+    #[must_use]
+    pub fn pow(self, y: Interval) -> Interval {
+        if y.lo == y.hi && y.lo.fract() == 0.0 && y.lo.abs() <= 1024.0 {
+            return self.powi(y.lo as i32);
+        }
+        if self.is_empty() || y.is_empty() || self.hi < 0.0 {
+            return Interval::EMPTY;
+        }
+        let base = Interval { lo: self.lo.max(0.0), ..self };
+        let corners =
+            [(base.lo, y.lo), (base.lo, y.hi), (base.hi, y.lo), (base.hi, y.hi)].map(|(a, b)| powf(a, b));
+        let lo = corners.iter().copied().fold(f64::INFINITY, f64::min);
+        let hi = corners.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        // Between corners the power runs through 1 where the base or the exponent changes sides.
+        let (lo, hi) =
+            if base.contains(1.0) || y.contains(0.0) { (lo.min(1.0), hi.max(1.0)) } else { (lo, hi) };
+        let wide = Interval::outward(lo, hi, self.partial || y.partial || self.lo < 0.0);
+        Interval { lo: wide.lo.max(0.0), ..wide }
+    }
+
+    /// ⌊x⌋; partial where it jumps.
+    #[must_use]
+    pub fn floor(self) -> Interval {
+        let (lo, hi) = (self.lo.floor(), self.hi.floor());
+        Interval { lo, hi, partial: self.partial || lo != hi }
+    }
+
+    /// The lesser.
+    #[must_use]
+    pub fn min(self, other: Interval) -> Interval {
+        Interval {
+            lo: self.lo.min(other.lo),
+            hi: self.hi.min(other.hi),
+            partial: self.partial || other.partial,
+        }
+    }
+
+    /// The greater.
+    #[must_use]
+    pub fn max(self, other: Interval) -> Interval {
+        Interval {
+            lo: self.lo.max(other.lo),
+            hi: self.hi.max(other.hi),
+            partial: self.partial || other.partial,
+        }
+    }
+}
+
+impl Neg for Interval {
+    type Output = Interval;
+
+    fn neg(self) -> Interval {
+        Interval { lo: -self.hi, hi: -self.lo, partial: self.partial }
+    }
+}
+
+impl Add for Interval {
+    type Output = Interval;
+
+    fn add(self, b: Interval) -> Interval {
+        Interval { lo: down(self.lo + b.lo), hi: up(self.hi + b.hi), partial: self.partial || b.partial }
+    }
+}
+
+impl Sub for Interval {
+    type Output = Interval;
+
+    fn sub(self, b: Interval) -> Interval {
+        Interval { lo: down(self.lo - b.hi), hi: up(self.hi - b.lo), partial: self.partial || b.partial }
+    }
+}
+
+/// 0 · ∞ is 0 here: an end of ∞ stands for numbers without bound, never for ∞ itself.
+fn times(a: f64, b: f64) -> f64 {
+    if a == 0.0 || b == 0.0 { 0.0 } else { a * b }
+}
+
+impl Mul for Interval {
+    type Output = Interval;
+
+    fn mul(self, b: Interval) -> Interval {
+        let partial = self.partial || b.partial;
+        if self.is_empty() || b.is_empty() {
+            return Interval::EMPTY;
+        }
+        let p = [times(self.lo, b.lo), times(self.lo, b.hi), times(self.hi, b.lo), times(self.hi, b.hi)];
+        let lo = p[0].min(p[1]).min(p[2].min(p[3]));
+        let hi = p[0].max(p[1]).max(p[2].max(p[3]));
+        Interval { lo: down(lo), hi: up(hi), partial }
+    }
+}
+
+impl Div for Interval {
+    type Output = Interval;
+
+    fn div(self, b: Interval) -> Interval {
+        let partial = self.partial || b.partial;
+        if self.is_empty() || b.is_empty() {
+            return Interval::EMPTY;
+        }
+        if b.contains(0.0) {
+            return Interval { partial: true, ..Interval::WHOLE };
+        }
+        let q = [self.lo / b.lo, self.lo / b.hi, self.hi / b.lo, self.hi / b.hi];
+        let lo = q[0].min(q[1]).min(q[2].min(q[3]));
+        let hi = q[0].max(q[1]).max(q[2].max(q[3]));
+        Interval { lo: down(lo), hi: up(hi), partial }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::elementary;
+
+    /// Seeded numbers in −10 … 10.
+    fn numbers(seed: u64) -> impl FnMut() -> f64 {
+        let mut state = seed;
+        move || {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (state >> 11) as f64 / (1u64 << 53) as f64 * 20.0 - 10.0
+        }
+    }
+
+    #[test]
+    fn every_value_of_the_arguments_lies_in_the_result() {
+        let mut next = numbers(7);
+        for _ in 0..20_000 {
+            let (a, w, b, v) = (next(), next().abs() / 4.0, next(), next().abs() / 4.0);
+            let (x, y) = (Interval::new(a, a + w), Interval::new(b, b + v));
+            let (s, t) = ((next() + 10.0) / 20.0, (next() + 10.0) / 20.0);
+            let (p, q) = ((a + s * w).clamp(a, a + w), (b + t * v).clamp(b, b + v));
+            let cases = [
+                ("+", x + y, p + q),
+                ("-", x - y, p - q),
+                ("*", x * y, p * q),
+                ("square", x.square(), p * p),
+                ("sin", x.sin(), elementary::sin(p)),
+                ("cos", x.cos(), elementary::cos(p)),
+                ("exp", x.exp(), elementary::exp(p)),
+                ("abs", x.abs(), p.abs()),
+                ("cube", x.powi(3), p * p * p),
+                ("fourth", x.powi(4), p * p * p * p),
+                ("floor", x.floor(), p.floor()),
+                ("min", x.min(y), p.min(q)),
+                ("max", x.max(y), p.max(q)),
+            ];
+            for (name, range, value) in cases {
+                assert!(range.contains(value), "{name}: {value:e} is not in {range:?} for {x:?}, {y:?}");
+            }
+            if !y.contains(0.0) {
+                assert!((x / y).contains(p / q), "{x:?} / {y:?}");
+            }
+            if a > 0.0 {
+                assert!(x.ln().contains(elementary::ln(p)) && x.sqrt().contains(p.sqrt()));
+                assert!(x.pow(y).contains(elementary::powf(p, q)), "{x:?} ^ {y:?} lacks {p} ^ {q}");
+            }
+        }
+    }
+
+    #[test]
+    fn crests_inside_are_reached() {
+        assert_eq!(Interval::new(0.0, 4.0).cos().lo, -1.0);
+        assert_eq!(Interval::new(1.0, 2.0).sin().hi, 1.0);
+        assert_eq!(Interval::new(-1.0, 1.0).cos().hi, 1.0);
+        assert!(Interval::new(0.1, 0.2).sin().width() < 0.1);
+    }
+
+    #[test]
+    fn undefined_parts_are_said() {
+        assert!(Interval::new(-1.0, 4.0).sqrt().partial);
+        assert_eq!(Interval::new(-1.0, 4.0).sqrt().lo, 0.0);
+        assert!(Interval::new(-2.0, -1.0).sqrt().is_empty());
+        assert!((Interval::point(1.0) / Interval::new(-1.0, 1.0)).partial);
+        assert!(Interval::new(0.5, 1.5).floor().partial);
+        assert!(!Interval::new(1.25, 1.5).floor().partial);
+    }
+
+    #[test]
+    fn a_square_is_tighter_than_a_product() {
+        let x = Interval::new(-1.0, 2.0);
+        assert!(x.square().lo >= 0.0 && (x * x).lo <= -2.0);
+    }
+}

@@ -1,0 +1,152 @@
+//! What a curve may run through: numbers, 2-vectors and 3-vectors (colours are 3-vectors). Knows nothing of curves.
+
+use glam::{DVec2, DVec3};
+use std::fmt::Debug;
+use std::ops::{Add, Div, Mul, Neg, Sub};
+
+/// A vector of one to three f64, so that one implementation serves all of them. The operators act on each coordinate alone.
+pub trait Point:
+    Copy
+    + Debug
+    + Default
+    + PartialEq
+    + Send
+    + Sync
+    + 'static
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Neg<Output = Self>
+    + Mul<f64, Output = Self>
+    + Div<f64, Output = Self>
+{
+    /// How many coordinates.
+    const DIMENSION: usize;
+
+    /// One coordinate; `axis` below [`Point::DIMENSION`].
+    fn coordinate(self, axis: usize) -> f64;
+
+    /// From its coordinates, called for each axis in order.
+    fn from_coordinates(coordinate: impl FnMut(usize) -> f64) -> Self;
+
+    /// Inner product.
+    fn dot(self, other: Self) -> f64;
+
+    /// All coordinates 0.
+    fn zero() -> Self {
+        Self::default()
+    }
+
+    /// Largest magnitude of a coordinate; NaN where one is NaN.
+    fn max_abs(self) -> f64 {
+        (0..Self::DIMENSION).fold(0.0, |m, axis| {
+            let c = self.coordinate(axis).abs();
+            if c > m || c.is_nan() { c } else { m }
+        })
+    }
+
+    /// Euclidean length; neither overflows nor underflows before the result does.
+    fn length(self) -> f64 {
+        let square = self.dot(self);
+        if square > SMALLEST_SAFE_SQUARE && square < f64::INFINITY {
+            return square.sqrt();
+        }
+        let scale = self.max_abs();
+        if scale == 0.0 || !scale.is_finite() {
+            return scale;
+        }
+        let unit = self / scale;
+        scale * unit.dot(unit).sqrt()
+    }
+
+    /// Distance to another point.
+    fn distance(self, other: Self) -> f64 {
+        (self - other).length()
+    }
+
+    /// The unit vector along this one; None where the length is 0 or not finite.
+    fn unit(self) -> Option<Self> {
+        let scale = self.max_abs();
+        if !(scale > 0.0 && scale < f64::INFINITY) {
+            return None;
+        }
+        // Twice, since the reciprocal of a subnormal overflows and a plain square underflows.
+        let near_one = self / scale;
+        Some(near_one / near_one.length())
+    }
+
+    /// No coordinate NaN or infinite.
+    fn is_finite(self) -> bool {
+        (0..Self::DIMENSION).all(|axis| self.coordinate(axis).is_finite())
+    }
+}
+
+/// Squares above this lose nothing to underflow: 2⁻⁹⁶⁰, so that a sum of three keeps all 53 bits.
+const SMALLEST_SAFE_SQUARE: f64 = 1.026e-289;
+
+impl Point for f64 {
+    const DIMENSION: usize = 1;
+
+    fn coordinate(self, _axis: usize) -> f64 {
+        self
+    }
+
+    fn from_coordinates(mut coordinate: impl FnMut(usize) -> f64) -> Self {
+        coordinate(0)
+    }
+
+    fn dot(self, other: Self) -> f64 {
+        self * other
+    }
+}
+
+impl Point for DVec2 {
+    const DIMENSION: usize = 2;
+
+    fn coordinate(self, axis: usize) -> f64 {
+        self[axis]
+    }
+
+    fn from_coordinates(mut coordinate: impl FnMut(usize) -> f64) -> Self {
+        let x = coordinate(0);
+        DVec2::new(x, coordinate(1))
+    }
+
+    fn dot(self, other: Self) -> f64 {
+        DVec2::dot(self, other)
+    }
+}
+
+impl Point for DVec3 {
+    const DIMENSION: usize = 3;
+
+    fn coordinate(self, axis: usize) -> f64 {
+        self[axis]
+    }
+
+    fn from_coordinates(mut coordinate: impl FnMut(usize) -> f64) -> Self {
+        let x = coordinate(0);
+        let y = coordinate(1);
+        DVec3::new(x, y, coordinate(2))
+    }
+
+    fn dot(self, other: Self) -> f64 {
+        DVec3::dot(self, other)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lengths_survive_squares_that_do_not_fit() {
+        for scale in [1e200, 1e-200] {
+            let length = Point::length(DVec2::new(3.0, 4.0) * scale);
+            assert!((length / scale - 5.0).abs() < 4.0 * f64::EPSILON, "{length}");
+        }
+        let tiny = DVec3::new(0.0, 5e-324, 0.0);
+        assert_eq!(tiny.unit(), Some(DVec3::Y));
+        assert_eq!(DVec3::ZERO.unit(), None);
+        assert_eq!((-2.0f64).unit(), Some(-1.0));
+    }
+}

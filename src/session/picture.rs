@@ -1,0 +1,129 @@
+//! From an evaluated scene to a picture: the camera chosen, the world built, the tracer made, the faults worded.
+//! Knows neither files to write nor terminals.
+
+use super::whole;
+use crate::diag::{Code, Diagnostic};
+use crate::render::camera::View;
+use crate::render::film::{Fault, Film};
+use crate::render::settings::{Crop, ResolvedSettings};
+use crate::render::tiles::{self, Picture, Progress};
+use crate::render::whitted::Whitted;
+use crate::render::{self, Tracer};
+use crate::scene::assets::Loader;
+use crate::scene::{Camera, RenderSettings, Scene};
+use crate::world::{World, WorldOptions};
+use std::sync::atomic::AtomicBool;
+
+/// What is asked of a picture beside what the scene says.
+#[derive(Clone, Debug, Default)]
+pub struct Job {
+    /// Settings that come before the scene's.
+    pub overrides: RenderSettings,
+    /// The label of the camera; none takes the first.
+    pub camera: Option<String>,
+    /// The part to render: x, y, width, height in pixels.
+    pub crop: Option<[u32; 4]>,
+    /// Threads; none takes as many as the machine has processors.
+    pub threads: Option<usize>,
+}
+
+/// Everything that a picture needs.
+pub struct Prepared {
+    /// What is seen.
+    pub world: World,
+    /// How.
+    pub settings: ResolvedSettings,
+    view: View,
+    tracer: Box<dyn Tracer>,
+}
+
+/// The settings of a job for a scene, and what keeps them from being used. Cheap: nothing is built.
+pub fn settings(scene: &Scene, job: &Job) -> Result<ResolvedSettings, String> {
+    let mut settings = ResolvedSettings::new(&scene.render, &job.overrides);
+    settings.threads = job.threads;
+    if let Some([x, y, width, height]) = job.crop {
+        let [w, h] = settings.size;
+        settings.crop = Crop { x, y, width, height };
+        if !settings.crop.fits(settings.size) {
+            return Err(format!("the crop {x},{y},{width},{height} does not lie within the {w}×{h} picture"));
+        }
+    }
+    Ok(settings)
+}
+
+/// Builds the world and all else that the picture needs. The diagnostics tell what is wrong with the scene as a whole and
+/// with the files it names; with an error among them nothing is prepared.
+pub fn prepare(
+    scene: Scene,
+    job: &Job,
+    settings: ResolvedSettings,
+    loader: &dyn Loader,
+) -> (Option<Prepared>, Vec<Diagnostic>) {
+    let mut found = whole::faults(&scene, true);
+    let view = match choose(&scene, job.camera.as_deref()) {
+        Ok(Some(camera)) => View::new(camera, settings.size)
+            .map_err(|fault| found.push(Diagnostic::new(Code::BadGeometry, camera.span, fault.to_string())))
+            .ok(),
+        Ok(None) => None,
+        Err(diagnostic) => {
+            found.push(diagnostic);
+            None
+        }
+    };
+    let Some(view) = view else { return (None, found) };
+    let options = WorldOptions { accelerator: settings.accelerator };
+    let (world, of_world) = World::new(scene.nodes, &options, loader);
+    found.extend(of_world);
+    let tracer = tracer(&world, &settings, &mut found);
+    let has_errors = found.iter().any(|d| d.severity == crate::diag::Severity::Error);
+    ((!has_errors).then_some(Prepared { world, settings, view, tracer }), found)
+}
+
+/// The camera with this label, or the first; none where there is none, which [`whole::faults`] tells.
+fn choose<'a>(scene: &'a Scene, label: Option<&str>) -> Result<Option<&'a Camera>, Diagnostic> {
+    let Some(label) = label else { return Ok(scene.cameras.first()) };
+    let labels = || scene.cameras.iter().filter_map(|camera| camera.label.as_deref());
+    let found = scene.cameras.iter().find(|camera| camera.label.as_deref() == Some(label));
+    if found.is_some() || scene.cameras.is_empty() {
+        return Ok(found);
+    }
+    let known = labels().collect::<Vec<_>>().join("`, `");
+    let fault = Diagnostic::new(Code::UnknownCamera, None, format!("no camera is labelled `{label}`"));
+    Err(match known.is_empty() {
+        true => fault.hint("the scene's cameras have no labels: write `camera front { … }`"),
+        false => fault.did_you_mean(label, labels()).hint(format!("the labels are `{known}`")),
+    })
+}
+
+/// The tracer of the settings; Whitted's takes the place of one that is not built yet, so that there is a picture.
+fn tracer(world: &World, settings: &ResolvedSettings, found: &mut Vec<Diagnostic>) -> Box<dyn Tracer> {
+    render::tracer(settings.tracer, world, settings).unwrap_or_else(|| {
+        let word = super::inspect::tracer_word(settings.tracer);
+        let message = format!("the tracer `{word}` is not built yet; `whitted` takes its place");
+        found.push(Diagnostic::new(Code::NotBuilt, None, message));
+        Box::new(Whitted::new(world, settings))
+    })
+}
+
+impl Prepared {
+    /// Renders. Once `cancel` is true the film comes back as far as it is.
+    pub fn render(&self, progress: &dyn Progress, cancel: &AtomicBool) -> Film {
+        let picture =
+            Picture { world: &self.world, view: &self.view, tracer: &*self.tracer, settings: &self.settings };
+        tiles::render(picture, progress, cancel)
+    }
+}
+
+/// What went wrong while a picture was made, one diagnostic for each expression.
+pub fn faults(film: &Film) -> Vec<Diagnostic> {
+    film.report.undefined.iter().map(undefined).collect()
+}
+
+fn undefined(fault: &Fault) -> Diagnostic {
+    let [x, y] = fault.pixel;
+    let pixels = if fault.count == 1 { "1 pixel".to_owned() } else { format!("{} pixels", fault.count) };
+    let message = format!("this function is undefined at {pixels}; the first is ({x}, {y})");
+    Diagnostic::new(Code::UndefinedSample, fault.span, message).label("no finite value there").hint(
+        "these pixels are magenta; keep a divisor from 0, clamp a root's argument, or choose with `? :`",
+    )
+}

@@ -1,0 +1,175 @@
+//! What a world stores: shapes and placements in groups, each with a tree; meshes with theirs; and how a placement of a
+//! placement is counted.
+
+use super::bvh::Tree;
+use super::shape::mesh::MeshShape;
+use super::shape::{EVERYTHING, Shape, image_of};
+use crate::diag::Span;
+use crate::math::{Aabb, Affine};
+use crate::scene::{Hide, Light};
+use std::collections::HashMap;
+use std::sync::Arc;
+
+/// A material that the group around decides.
+pub(super) const INHERITED: u32 = u32::MAX;
+
+/// Things under one tree, in one space. The world itself is the first.
+#[derive(Debug)]
+pub(super) enum Aggregate {
+    Group(Group),
+    Mesh(MeshAggregate),
+}
+
+impl Aggregate {
+    pub fn tree(&self) -> &Tree {
+        match self {
+            Aggregate::Group(group) => &group.tree,
+            Aggregate::Mesh(mesh) => &mesh.shape.tree,
+        }
+    }
+
+    /// Around everything; all of space where something is infinite.
+    pub fn bounds(&self) -> Aabb {
+        match self {
+            Aggregate::Group(group) => group.bounds,
+            Aggregate::Mesh(mesh) => mesh.bounds,
+        }
+    }
+
+    /// How many placements it holds, those inside its placements included.
+    pub fn placements(&self) -> u64 {
+        match self {
+            Aggregate::Group(group) => group.placements,
+            Aggregate::Mesh(_) => 0,
+        }
+    }
+}
+
+/// A mesh and the materials of its file.
+#[derive(Debug)]
+pub(super) struct MeshAggregate {
+    pub shape: MeshShape,
+    pub bounds: Aabb,
+    /// By the mesh's own numbers; empty where it has none.
+    pub materials: Vec<u32>,
+}
+
+impl MeshAggregate {
+    /// The material that the mesh's file gives a triangle.
+    pub fn material_of(&self, triangle: u32) -> u32 {
+        let own = self.shape.mesh.material_of_triangle.get(triangle as usize);
+        own.and_then(|&m| self.materials.get(m as usize)).copied().unwrap_or(INHERITED)
+    }
+}
+
+/// Shapes and placements, in the order of the scene, as columns: what a ray needs first apart from what a hit needs.
+#[derive(Debug, Default)]
+pub(super) struct Group {
+    pub items: Vec<Item>,
+    pub tree: Tree,
+    pub bounds: Aabb,
+    /// Per item, an index of the world's materials or [`INHERITED`].
+    pub material: Vec<u32>,
+    pub span: Vec<Span>,
+    /// The group of the scene that an item stood in; empty where all stood at the top.
+    pub scope: Vec<u32>,
+    pub scopes: Vec<Scope>,
+    /// Empty where nothing is hidden from anyone.
+    pub hide: Vec<Hide>,
+    /// Names of the few that have one.
+    pub names: HashMap<u32, Box<str>>,
+    pub lights: Vec<(Arc<Light>, Affine)>,
+    /// Items that are the objects of area lights, with them.
+    pub area_lights: Vec<(u32, Arc<Light>)>,
+    /// The items that are placements, in order.
+    pub instances: Vec<u32>,
+    pub placements: u64,
+}
+
+/// A group of the scene that was dissolved into a larger one; kept for provenance.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Scope {
+    pub span: Span,
+    /// The scope around it; [`Scope::TOP`] for none.
+    pub parent: u32,
+}
+
+impl Scope {
+    pub const TOP: u32 = u32::MAX;
+}
+
+/// Something a ray may meet.
+#[derive(Debug)]
+pub(super) enum Item {
+    /// A shape, and the transform from its own space where there is one.
+    Shape(Shape, Option<Box<Affine>>),
+    /// An aggregate placed.
+    Instance(Box<Instance>),
+}
+
+#[derive(Debug)]
+pub(super) struct Instance {
+    pub aggregate: u32,
+    /// The space around from the aggregate's. None for the identity.
+    pub transform: Option<Affine>,
+    /// Added to the number of the placement around to number this one; see [`Group::number`].
+    pub first: u64,
+}
+
+impl Group {
+    /// The spans of the groups around an item, outermost first.
+    pub fn scopes_around(&self, item: usize) -> Vec<Span> {
+        let mut spans = Vec::new();
+        let mut at = self.scope.get(item).copied().unwrap_or(Scope::TOP);
+        while at != Scope::TOP {
+            let scope = self.scopes[at as usize];
+            spans.push(scope.span);
+            at = scope.parent;
+        }
+        spans.reverse();
+        spans
+    }
+
+    /// Numbers the placements: a placement's number is that of the one around it plus `first`, and the numbers of all that it holds
+    /// follow its own. Saturates beyond 2⁶⁴ placements, where numbers are no longer unique.
+    pub fn number(&mut self, aggregates: &[Aggregate]) {
+        let mut next = 1u64;
+        for &item in &self.instances {
+            if let Item::Instance(instance) = &mut self.items[item as usize] {
+                instance.first = next;
+                next = next
+                    .saturating_add(1)
+                    .saturating_add(aggregates[instance.aggregate as usize].placements());
+            }
+        }
+        self.placements = next - 1;
+    }
+
+    /// The placement that holds, or is, the one numbered `id` from this group; none for 0.
+    pub fn placement(&self, id: u64) -> Option<(u32, &Instance)> {
+        if id == 0 {
+            return None;
+        }
+        let instance = |item: u32| match &self.items[item as usize] {
+            Item::Instance(instance) => Some((item, &**instance)),
+            Item::Shape(..) => None,
+        };
+        let after = self.instances.partition_point(|&i| instance(i).is_some_and(|(_, p)| p.first <= id));
+        instance(*self.instances.get(after.checked_sub(1)?)?)
+    }
+
+    /// The box around an item, in this group's space.
+    pub fn item_bounds(&self, item: usize, aggregates: &[Aggregate]) -> Aabb {
+        match &self.items[item] {
+            Item::Shape(shape, transform) => shape.bounds(transform.as_deref()),
+            Item::Instance(instance) => {
+                let bounds = aggregates[instance.aggregate as usize].bounds();
+                match &instance.transform {
+                    _ if bounds.is_empty() || bounds == EVERYTHING => bounds,
+                    None => bounds,
+                    Some(transform) => image_of(bounds, transform),
+                }
+            }
+        }
+    }
+}

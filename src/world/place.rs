@@ -1,0 +1,184 @@
+//! From a meeting in some shape's own space to a [`Hit`] in the world's: the way down through the placements, and the surface
+//! carried back up it.
+
+use super::aggregate::{Aggregate, Group, INHERITED, Instance, Item};
+use super::query::Candidate;
+use super::shape::{LocalRay, Surface, perpendicular};
+use super::{Hit, PrimitiveId, Provenance, World};
+use crate::math::Affine;
+use crate::math::error::gamma;
+use glam::DVec3;
+
+/// A step from a group into a placement.
+struct Step<'w> {
+    group: &'w Group,
+    item: u32,
+    instance: &'w Instance,
+}
+
+/// The placements on the way to a primitive, outermost first, and the aggregate it is in.
+struct Path<'w> {
+    steps: Vec<Step<'w>>,
+    aggregate: &'w Aggregate,
+}
+
+impl World {
+    fn path(&self, mut id: u64) -> Path<'_> {
+        let mut path = Path { steps: Vec::new(), aggregate: &self.aggregates[0] };
+        while let Aggregate::Group(group) = path.aggregate
+            && let Some((item, instance)) = group.placement(id)
+        {
+            id -= instance.first;
+            path.steps.push(Step { group, item, instance });
+            path.aggregate = &self.aggregates[instance.aggregate as usize];
+        }
+        path
+    }
+
+    /// The hit that a candidate is. `ray` is the world's.
+    pub(super) fn finish(&self, ray: &LocalRay, t: f64, candidate: &Candidate) -> Option<Hit<'_>> {
+        let path = self.path(candidate.id.instance);
+        let (shape, own_transform) = match path.aggregate {
+            Aggregate::Mesh(_) => (None, None),
+            Aggregate::Group(group) => match &group.items[candidate.id.shape as usize] {
+                Item::Shape(shape, transform) => (Some(shape), transform.as_deref()),
+                Item::Instance(_) => return None,
+            },
+        };
+        let placements = path.steps.iter().filter_map(|step| step.instance.transform.as_ref());
+        let transforms: Vec<&Affine> = placements.chain(own_transform).collect();
+        let mut local = *ray;
+        for transform in &transforms {
+            local = local.into_local(transform)?.0;
+        }
+        let surface = match (shape, path.aggregate) {
+            (Some(shape), _) => shape.surface(&local, &candidate.meet),
+            (None, Aggregate::Mesh(mesh)) => mesh.shape.surface(candidate.id.part, &candidate.meet),
+            (None, Aggregate::Group(_)) => return None,
+        };
+        let material = &self.materials[self.material_on(&path, candidate.id) as usize];
+        let world = if transforms.is_empty() { surface } else { carried(&surface, &transforms) };
+        let normal = on_side_of(world.normal, world.geometric_normal);
+        Some(Hit {
+            t,
+            point: world.point,
+            error: world.error,
+            geometric_normal: world.geometric_normal,
+            normal,
+            tangent: tangent_for(normal, world.tangent),
+            uv: surface.uv,
+            local_point: surface.point,
+            material,
+            primitive: candidate.id,
+        })
+    }
+
+    /// An object's own material wins, then its mesh's, then that of the groups around it, from inside out.
+    fn material_on(&self, path: &Path<'_>, id: PrimitiveId) -> u32 {
+        let mut placed = path.steps.iter().rev().map(|step| step.group.material[step.item as usize]);
+        let own = match path.aggregate {
+            Aggregate::Group(group) => group.material[id.shape as usize],
+            Aggregate::Mesh(mesh) => match placed.next() {
+                Some(m) if m != INHERITED => m,
+                _ => mesh.material_of(id.part),
+            },
+        };
+        let chosen = std::iter::once(own).chain(placed).find(|&m| m != INHERITED);
+        chosen.unwrap_or(super::lower::DEFAULT_MATERIAL)
+    }
+
+    /// Where a primitive came from.
+    pub fn provenance(&self, primitive: PrimitiveId) -> Option<Provenance> {
+        let path = self.path(primitive.instance);
+        let mut spans = Vec::new();
+        for step in &path.steps {
+            spans.extend(step.group.scopes_around(step.item as usize));
+            spans.push(step.group.span[step.item as usize]);
+        }
+        let (group, item) = match path.aggregate {
+            Aggregate::Group(group) => {
+                spans.extend(group.scopes_around(primitive.shape as usize));
+                (group, primitive.shape)
+            }
+            Aggregate::Mesh(_) => {
+                let step = path.steps.last()?;
+                spans.pop();
+                (step.group, step.item)
+            }
+        };
+        let name = group.names.get(&item).cloned();
+        Some(Provenance { span: *group.span.get(item as usize)?, path: spans, name })
+    }
+}
+
+/// A surface through transforms, the outermost first. Its error grows by the rounding on the way up and by what comes of going
+/// down the same way again, which the next ray will do: that part is measured, since composed inverses are inverses only up to the
+/// condition of the map.
+fn carried(surface: &Surface, transforms: &[&Affine]) -> Surface {
+    let mut up = Affine::IDENTITY;
+    for transform in transforms.iter().rev() {
+        up = up.then(transform);
+    }
+    let point = up.point(surface.point);
+    let mut back = point;
+    let mut doubt_down = DVec3::ZERO;
+    for transform in transforms {
+        let terms = absolute(&transform.inverse_linear, back.abs()) + transform.inverse_translation.abs();
+        doubt_down = absolute(&transform.inverse_linear, doubt_down) + terms * gamma(4);
+        back = transform.inverse_linear * back + transform.inverse_translation;
+    }
+    let local_doubt = surface.error + (back - surface.point).abs() * 2.0 + doubt_down;
+    let terms = absolute(&up.linear, surface.point.abs()) + up.translation.abs();
+    let geometric_normal = normal_through(&up, surface.geometric_normal);
+    Surface {
+        point,
+        error: absolute(&up.linear, local_doubt) * (1.0 + gamma(4)) + terms * gamma(4),
+        geometric_normal,
+        normal: if surface.normal == surface.geometric_normal {
+            geometric_normal
+        } else {
+            normal_through(&up, surface.normal)
+        },
+        tangent: up.vector(surface.tangent),
+        uv: surface.uv,
+    }
+}
+
+/// |M|·v for a vector of magnitudes.
+fn absolute(m: &glam::DMat3, v: DVec3) -> DVec3 {
+    m.x_axis.abs() * v.x + m.y_axis.abs() * v.y + m.z_axis.abs() * v.z
+}
+
+/// By the inverse transpose, so that outward stays outward under mirrors too; scaled first, so that nothing overflows.
+fn normal_through(up: &Affine, normal: DVec3) -> DVec3 {
+    let n = up.normal(normal);
+    (n / n.abs().max_element()).try_normalize().unwrap_or(normal)
+}
+
+/// The unit shading normal, turned to the geometric normal's side; the geometric normal where the two are perpendicular or the
+/// shading normal vanishes.
+fn on_side_of(normal: DVec3, geometric: DVec3) -> DVec3 {
+    if normal == geometric {
+        return geometric;
+    }
+    let Some(unit) = normal.try_normalize() else { return geometric };
+    let cosine = unit.dot(geometric);
+    if cosine > 0.0 {
+        unit
+    } else if cosine < 0.0 {
+        unit - geometric * (2.0 * cosine)
+    } else {
+        geometric
+    }
+}
+
+/// The unit tangent nearest to one that need not be perpendicular, or any where there is none.
+fn tangent_for(normal: DVec3, along: DVec3) -> DVec3 {
+    let size = along.abs().max_element();
+    let scaled = along / size;
+    let across = scaled - normal * normal.dot(scaled);
+    // What is left of a tangent that is the normal up to rounding points nowhere.
+    let usable = size > 0.0 && across.length_squared() > gamma(16) * gamma(16);
+    let chosen = if usable { across.try_normalize() } else { None };
+    chosen.unwrap_or_else(|| perpendicular(normal))
+}

@@ -1,0 +1,148 @@
+//! Rays through aggregates and their placements.
+
+use super::aggregate::{Aggregate, Group, Item};
+use super::shape::triangle::Sheared;
+use super::shape::{LocalRay, Meet};
+use super::{PrimitiveId, RayKind, World};
+use crate::scene::Hide;
+
+/// The best meeting so far.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Candidate {
+    /// Distance in the world's units of the ray.
+    pub t: f64,
+    pub id: PrimitiveId,
+    /// In the units of the shape's own space.
+    pub meet: Meet,
+}
+
+/// What is asked of a ray.
+pub(super) struct Query<'w> {
+    world: &'w World,
+    kind: RayKind,
+    /// True where any meeting will do.
+    any: bool,
+    /// Largest distance that counts, in the world's units.
+    limit: f64,
+    found: Option<Candidate>,
+}
+
+/// A ray in an aggregate's space, and where that space stands.
+#[derive(Clone, Copy)]
+struct Local {
+    ray: LocalRay,
+    /// How many of the ray's distances make one of the world's: a power of two.
+    per_world: f64,
+    /// The placement's number.
+    instance: u64,
+}
+
+impl<'w> Query<'w> {
+    /// The nearest meeting with a distance in (0, limit], or any; ties go to the smaller id, whatever the tree.
+    pub fn run(
+        world: &'w World,
+        ray: &LocalRay,
+        per_world: f64,
+        limit: f64,
+        kind: RayKind,
+        any: bool,
+    ) -> Option<Candidate> {
+        let mut query = Query { world, kind, any, limit, found: None };
+        query.visit(&world.aggregates[0], Local { ray: *ray, per_world, instance: 0 });
+        query.found
+    }
+
+    fn visit(&mut self, aggregate: &Aggregate, local: Local) {
+        match aggregate {
+            Aggregate::Group(group) => self.visit_group(group, local),
+            Aggregate::Mesh(mesh) => {
+                let ray = Sheared::new(&local.ray);
+                let limit = self.limit * local.per_world;
+                mesh.shape.tree.traverse(local.ray.origin, local.ray.direction, limit, |range, _| {
+                    for position in range {
+                        if let Some(meet) = mesh.shape.meet(position, &ray, self.limit * local.per_world) {
+                            let part = mesh.shape.triangle_at(position);
+                            let id = PrimitiveId { instance: local.instance, shape: 0, part };
+                            self.offer(id, meet, &local);
+                        }
+                    }
+                    self.rest(&local)
+                });
+            }
+        }
+    }
+
+    fn visit_group(&mut self, group: &Group, local: Local) {
+        let limit = self.limit * local.per_world;
+        group.tree.traverse(local.ray.origin, local.ray.direction, limit, |range, _| {
+            for position in range {
+                let item = group.tree.order()[position] as usize;
+                self.visit_item(group, item, &local);
+                if self.any && self.found.is_some() {
+                    break;
+                }
+            }
+            self.rest(&local)
+        });
+    }
+
+    /// What matters from here on, in local units; negative where nothing does.
+    fn rest(&self, local: &Local) -> f64 {
+        if self.any && self.found.is_some() { -1.0 } else { self.limit * local.per_world }
+    }
+
+    fn visit_item(&mut self, group: &Group, item: usize, local: &Local) {
+        if !group.hide.is_empty() && is_hidden(group.hide[item], self.kind) {
+            return;
+        }
+        match &group.items[item] {
+            Item::Shape(shape, transform) => {
+                let (ray, factor) = match transform {
+                    None => (local.ray, 1.0),
+                    Some(transform) => match local.ray.into_local(transform) {
+                        None => return,
+                        Some(inside) => inside,
+                    },
+                };
+                let inside = Local { ray, per_world: local.per_world * factor, instance: local.instance };
+                if let Some(meet) = shape.meet(&ray, self.limit * inside.per_world) {
+                    let id = PrimitiveId { instance: local.instance, shape: item as u32, part: 0 };
+                    self.offer(id, meet, &inside);
+                }
+            }
+            Item::Instance(instance) => {
+                let (ray, factor) = match &instance.transform {
+                    None => (local.ray, 1.0),
+                    Some(transform) => match local.ray.into_local(transform) {
+                        None => return,
+                        Some(inside) => inside,
+                    },
+                };
+                let inside = Local {
+                    ray,
+                    per_world: local.per_world * factor,
+                    instance: local.instance.saturating_add(instance.first),
+                };
+                self.visit(&self.world.aggregates[instance.aggregate as usize], inside);
+            }
+        }
+    }
+
+    fn offer(&mut self, id: PrimitiveId, meet: Meet, local: &Local) {
+        let t = meet.t / local.per_world;
+        let better = self.found.is_none_or(|best| t < best.t || (t == best.t && id < best.id));
+        if better && t <= self.limit {
+            self.limit = t;
+            self.found = Some(Candidate { t, id, meet });
+        }
+    }
+}
+
+/// Whether rays of a kind pass through.
+fn is_hidden(hide: Hide, kind: RayKind) -> bool {
+    match kind {
+        RayKind::Camera => hide.camera,
+        RayKind::Shadow => hide.shadow,
+        RayKind::Indirect => hide.reflection,
+    }
+}

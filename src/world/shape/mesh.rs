@@ -1,0 +1,60 @@
+//! Meshes as rays meet them: shared vertices, triangles in the order of their tree.
+
+use super::triangle::{Corners, Sheared, bounds_of, surface_of};
+use super::{Meet, Surface};
+use crate::geometry::mesh::Mesh;
+use crate::world::bvh::Tree;
+use glam::DVec3;
+use std::sync::Arc;
+
+/// A mesh and its tree.
+#[derive(Clone, Debug)]
+pub struct MeshShape {
+    /// The mesh.
+    pub mesh: Arc<Mesh>,
+    /// Its triangles in the tree's order, so that a leaf reads consecutive memory.
+    triangles: Vec<[u32; 3]>,
+    /// Over the triangles.
+    pub tree: Tree,
+}
+
+impl MeshShape {
+    /// Builds the tree, or a list.
+    pub fn new(mesh: Arc<Mesh>, with_tree: bool) -> MeshShape {
+        let count = mesh.triangles.len();
+        let tree = if with_tree {
+            Tree::build(count, |i| bounds_of(corners(&mesh, mesh.triangles[i])))
+        } else {
+            Tree::list(count, |i| bounds_of(corners(&mesh, mesh.triangles[i])))
+        };
+        let triangles = tree.order().iter().map(|&i| mesh.triangles[i as usize]).collect();
+        MeshShape { mesh, triangles, tree }
+    }
+
+    /// A ray against the triangle at a position of the tree's order.
+    #[inline(always)]
+    pub fn meet(&self, position: usize, ray: &Sheared, limit: f64) -> Option<Meet> {
+        ray.meet(corners(&self.mesh, self.triangles[position]), limit)
+    }
+
+    /// The triangle at a position of the tree's order, by its number in the mesh.
+    pub fn triangle_at(&self, position: usize) -> u32 {
+        self.tree.order()[position]
+    }
+
+    /// The surface of a triangle of the mesh.
+    pub fn surface(&self, triangle: u32, meet: &Meet) -> Surface {
+        let mesh = &self.mesh;
+        let indices = mesh.triangles[triangle as usize];
+        let data = Corners {
+            normals: (!mesh.normals.is_empty()).then(|| indices.map(|i| mesh.normals[i as usize])),
+            uvs: (!mesh.uvs.is_empty()).then(|| indices.map(|i| mesh.uvs[i as usize])),
+        };
+        surface_of(corners(mesh, indices), data, meet)
+    }
+}
+
+#[inline(always)]
+fn corners(mesh: &Mesh, indices: [u32; 3]) -> [DVec3; 3] {
+    indices.map(|i| mesh.positions[i as usize])
+}

@@ -1,0 +1,174 @@
+//! Shapes as rays meet them: exact tests in f64, in each shape's own space.
+//!
+//! A test answers with the nearest distance in (0, limit] and just enough ([`Meet`]) to find the rest later; only the hit that
+//! wins is turned into a [`Surface`]. Surfaces carry a bound on the error of their point, large enough that a ray started
+//! beyond it does not meet the same shape at the same place again.
+
+mod cuboid;
+mod disc;
+pub mod mesh;
+mod plane;
+mod rect;
+mod sphere;
+pub mod triangle;
+
+pub use cuboid::Cuboid;
+pub use disc::Disc;
+pub use plane::Plane;
+pub use rect::Rect;
+pub use sphere::Sphere;
+pub use triangle::Triangle;
+
+use crate::math::exact::{exponent, power_of_two};
+use crate::math::{Aabb, Affine};
+use glam::{DVec2, DVec3};
+
+/// A ray in some space, its direction scaled by a power of two to a largest component in [1, 2).
+#[derive(Clone, Copy, Debug)]
+pub struct LocalRay {
+    /// Where it starts.
+    pub origin: DVec3,
+    /// Where it goes.
+    pub direction: DVec3,
+}
+
+impl LocalRay {
+    /// The ray, and how many of its distances make one of `direction`'s. None where the direction is 0 or not finite.
+    pub fn new(origin: DVec3, direction: DVec3) -> Option<(LocalRay, f64)> {
+        let e = exponent(direction.abs().max_element());
+        if !(-1022..=1023).contains(&e) || !direction.is_finite() {
+            return None;
+        }
+        let unit = power_of_two(-e);
+        Some((LocalRay { origin, direction: direction * unit }, power_of_two(e)))
+    }
+
+    /// The same ray in the space that `transform` maps from, and how many of its distances make one of these.
+    pub fn into_local(&self, transform: &Affine) -> Option<(LocalRay, f64)> {
+        let origin = transform.inverse_linear * self.origin + transform.inverse_translation;
+        LocalRay::new(origin, transform.inverse_linear * self.direction)
+    }
+
+    /// The point at a distance.
+    pub fn at(&self, t: f64) -> DVec3 {
+        self.origin + self.direction * t
+    }
+}
+
+/// That a ray meets a shape, and what its test already knows of where.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Meet {
+    /// Distance along the local ray.
+    pub t: f64,
+    /// What the shape's test leaves for its surface: barycentric coordinates of the second and third corner of a triangle.
+    pub a: f64,
+    /// The second such number.
+    pub b: f64,
+    /// Which face of a shape that has several.
+    pub face: u32,
+}
+
+impl Meet {
+    /// At a distance, with nothing else known.
+    pub fn at(t: f64) -> Meet {
+        Meet { t, ..Meet::default() }
+    }
+}
+
+/// A point of a surface, in its shape's space.
+#[derive(Clone, Copy, Debug)]
+pub struct Surface {
+    /// The point, on the surface up to `error`.
+    pub point: DVec3,
+    /// Bound on the absolute error of each coordinate.
+    pub error: DVec3,
+    /// Unit geometric normal, outward.
+    pub geometric_normal: DVec3,
+    /// Shading normal, not 0.
+    pub normal: DVec3,
+    /// Along growing u; 0 where u has no direction.
+    pub tangent: DVec3,
+    /// Surface parameters.
+    pub uv: DVec2,
+}
+
+/// The shapes. Small ones are held in place, so that a million spheres are one array.
+#[derive(Clone, Debug)]
+#[allow(missing_docs, reason = "each is named for its type")]
+pub enum Shape {
+    Sphere(Sphere),
+    Plane(Plane),
+    Disc(Box<Disc>),
+    Rect(Box<Rect>),
+    Cuboid(Box<Cuboid>),
+    Triangle(Box<Triangle>),
+}
+
+impl Shape {
+    /// The nearest meeting in (0, limit].
+    pub fn meet(&self, ray: &LocalRay, limit: f64) -> Option<Meet> {
+        match self {
+            Shape::Sphere(s) => s.meet(ray, limit),
+            Shape::Plane(s) => s.meet(ray, limit),
+            Shape::Disc(s) => s.meet(ray, limit),
+            Shape::Rect(s) => s.meet(ray, limit),
+            Shape::Cuboid(s) => s.meet(ray, limit),
+            Shape::Triangle(s) => s.meet(ray, limit),
+        }
+    }
+
+    /// The surface where a ray met it.
+    pub fn surface(&self, ray: &LocalRay, meet: &Meet) -> Surface {
+        match self {
+            Shape::Sphere(s) => s.surface(ray, meet),
+            Shape::Plane(s) => s.surface(ray, meet),
+            Shape::Disc(s) => s.surface(ray, meet),
+            Shape::Rect(s) => s.surface(ray, meet),
+            Shape::Cuboid(s) => s.surface(ray, meet),
+            Shape::Triangle(s) => s.surface(meet),
+        }
+    }
+
+    /// A box around it, infinite for a plane; in the space that `transform` maps to.
+    pub fn bounds(&self, transform: Option<&Affine>) -> Aabb {
+        let local = match (self, transform) {
+            (Shape::Sphere(s), _) => return s.bounds(transform),
+            (Shape::Plane(_), _) => return EVERYTHING,
+            (Shape::Disc(s), _) => s.bounds(),
+            (Shape::Rect(s), _) => s.bounds(),
+            (Shape::Cuboid(s), _) => s.bounds(),
+            (Shape::Triangle(s), _) => s.bounds(),
+        };
+        transform.map_or(local, |transform| image_of(local, transform))
+    }
+}
+
+/// All of space.
+pub const EVERYTHING: Aabb = Aabb { min: DVec3::NEG_INFINITY, max: DVec3::INFINITY };
+
+/// The box around a box's image, widened by the rounding of the map.
+pub fn image_of(bounds: Aabb, transform: &Affine) -> Aabb {
+    let reach = bounds.min.abs().max(bounds.max.abs());
+    let linear = transform.linear;
+    let terms = linear.x_axis.abs() * reach.x + linear.y_axis.abs() * reach.y + linear.z_axis.abs() * reach.z;
+    padded(transform.aabb(bounds), (terms + transform.translation.abs()) * crate::math::error::gamma(6))
+}
+
+/// The box with each side moved outward.
+pub fn padded(bounds: Aabb, by: DVec3) -> Aabb {
+    Aabb { min: bounds.min - by, max: bounds.max + by }
+}
+
+/// A unit vector perpendicular to a unit vector (Duff et al., *Building an orthonormal basis, revisited*, 2017).
+pub fn perpendicular(n: DVec3) -> DVec3 {
+    let sign = 1.0f64.copysign(n.z);
+    let a = -1.0 / (sign + n.z);
+    DVec3::new(1.0 + sign * n.x * n.x * a, sign * n.x * n.y * a, -sign * n.x)
+}
+
+/// Unit vectors u and v of a plane with unit normal n: u is horizontal and u × v = n, so that a picture on a wall stands upright;
+/// on a floor u is x.
+pub fn upright(n: DVec3) -> (DVec3, DVec3) {
+    let u = DVec3::Y.cross(n).try_normalize().unwrap_or(DVec3::X);
+    (u, n.cross(u))
+}

@@ -1,0 +1,44 @@
+//! Infinite planes. Grazing rays are the hard case: n·d and the distance to the plane are summed in twice the working
+//! precision, and the point is put back onto the plane.
+
+use super::{LocalRay, Meet, Surface, upright};
+use crate::math::error::gamma;
+use crate::math::exact::{dot, sum_of_products};
+use glam::{DVec2, DVec3};
+
+/// n·p = offset.
+#[derive(Clone, Copy, Debug)]
+pub struct Plane {
+    /// Unit normal.
+    pub normal: DVec3,
+    /// n·p on the plane.
+    pub offset: f64,
+}
+
+impl Plane {
+    /// How far a point is above the plane, in multiples of |normal|.
+    fn height(&self, p: DVec3) -> f64 {
+        let n = self.normal;
+        sum_of_products([(n.x, p.x), (n.y, p.y), (n.z, p.z), (-self.offset, 1.0)])
+    }
+
+    pub(super) fn meet(&self, ray: &LocalRay, limit: f64) -> Option<Meet> {
+        let t = -self.height(ray.origin) / dot(self.normal, ray.direction);
+        (t > 0.0 && t <= limit).then(|| Meet::at(t))
+    }
+
+    pub(super) fn surface(&self, ray: &LocalRay, meet: &Meet) -> Surface {
+        let n = self.normal;
+        let far = ray.at(meet.t);
+        let point = far - n * (self.height(far) / n.length_squared());
+        let (u, v) = upright(n);
+        Surface {
+            point,
+            error: point.abs() * gamma(4),
+            geometric_normal: n,
+            normal: n,
+            tangent: u,
+            uv: DVec2::new(point.dot(u), point.dot(v)),
+        }
+    }
+}

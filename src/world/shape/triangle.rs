@@ -1,0 +1,184 @@
+//! Triangles without holes between them.
+//!
+//! Woop, Benthin & Wald, *Watertight ray/triangle intersection*, JCGT 2(1), 2013, in f64: the ray is sheared onto an axis and
+//! each edge is decided by the sign of a difference of two products of the shared corners, exactly where they are nearly equal,
+//! so that two triangles with a common edge never both let a ray through. The point is found from the barycentric
+//! coordinates and not from the distance, which is only as good as the longest axis.
+
+use super::{LocalRay, Meet, Surface};
+use crate::math::Aabb;
+use crate::math::error::gamma;
+use crate::math::exact::difference_of_products;
+use crate::scene;
+use glam::{DVec2, DVec3};
+
+/// A ray prepared for many triangles.
+#[derive(Clone, Copy, Debug)]
+pub struct Sheared {
+    origin: DVec3,
+    direction: DVec3,
+    /// The axes, the ray's largest last.
+    axes: [usize; 3],
+    /// x and y of the direction over its z, and 1 over its z.
+    shear: [f64; 3],
+}
+
+/// Distances below this share of the triangle's depth along the ray are found again from the plane: the sheared distance of a
+/// sliver is off by u times its aspect, which stays below this share up to aspects of 2³⁰.
+const NEAR: f64 = 1.0 / (1u64 << 22) as f64;
+
+impl Sheared {
+    /// Prepares a ray.
+    pub fn new(ray: &LocalRay) -> Sheared {
+        let size = ray.direction.abs();
+        let z = if size.x > size.y && size.x > size.z {
+            0
+        } else if size.y > size.z {
+            1
+        } else {
+            2
+        };
+        let axes = [(z + 1) % 3, (z + 2) % 3, z];
+        let d = ray.direction.to_array();
+        let shear = [d[axes[0]] / d[z], d[axes[1]] / d[z], 1.0 / d[z]];
+        Sheared { origin: ray.origin, direction: ray.direction, axes, shear }
+    }
+
+    /// A corner relative to the ray: sheared x and y, and z unsheared.
+    #[inline(always)]
+    fn corner(&self, p: DVec3) -> [f64; 3] {
+        let q = (p - self.origin).to_array();
+        let [x, y, z] = self.axes;
+        [q[x] - self.shear[0] * q[z], q[y] - self.shear[1] * q[z], q[z]]
+    }
+
+    /// Where the ray meets the triangle, at a distance in (0, limit]; from either side.
+    #[inline(always)]
+    pub fn meet(&self, corners: [DVec3; 3], limit: f64) -> Option<Meet> {
+        let [a, b, c] = corners.map(|p| self.corner(p));
+        let mut u = c[0] * b[1] - c[1] * b[0];
+        let mut v = a[0] * c[1] - a[1] * c[0];
+        let mut w = b[0] * a[1] - b[1] * a[0];
+        if u == 0.0 || v == 0.0 || w == 0.0 {
+            u = difference_of_products(c[0], b[1], c[1], b[0]);
+            v = difference_of_products(a[0], c[1], a[1], c[0]);
+            w = difference_of_products(b[0], a[1], b[1], a[0]);
+        }
+        if (u < 0.0 || v < 0.0 || w < 0.0) && (u > 0.0 || v > 0.0 || w > 0.0) {
+            return None;
+        }
+        let determinant = u + v + w;
+        if determinant == 0.0 {
+            return None;
+        }
+        let inverse = 1.0 / determinant;
+        let sum = u * a[2] + v * b[2] + w * c[2];
+        let mut t = sum * self.shear[2] * inverse;
+        let depth = a[2].abs().max(b[2].abs()).max(c[2].abs()) * self.shear[2].abs();
+        if t.abs() <= depth * NEAR {
+            t = self.distance_by_plane(corners)?;
+        }
+        (t > 0.0 && t <= limit).then_some(Meet { t, a: v * inverse, b: w * inverse, face: 0 })
+    }
+
+    /// From the triangle's plane through its nearest corner, for rays that start on or beside it.
+    #[cold]
+    fn distance_by_plane(&self, corners: [DVec3; 3]) -> Option<f64> {
+        let n = normal_of(corners);
+        let nearest = corners
+            .into_iter()
+            .map(|p| p - self.origin)
+            .min_by(|p, q| p.length_squared().total_cmp(&q.length_squared()))?;
+        let t = n.dot(nearest) / n.dot(self.direction);
+        t.is_finite().then_some(t)
+    }
+}
+
+/// (b − a) × (c − a), each component to an ulp or two of the edges' own rounding. Not normalised.
+pub fn normal_of([a, b, c]: [DVec3; 3]) -> DVec3 {
+    let (e, f) = (b - a, c - a);
+    DVec3::new(accurate(e.y, f.z, e.z, f.y), accurate(e.z, f.x, e.x, f.z), accurate(e.x, f.y, e.y, f.x))
+}
+
+/// ab − cd to 1.5 ulp (Kahan).
+fn accurate(a: f64, b: f64, c: f64, d: f64) -> f64 {
+    use crate::math::exact::two_product;
+    let ((p, e), (q, f)) = (two_product(a, b), two_product(c, d));
+    (p - q) + (e - f)
+}
+
+/// What a triangle's corners may carry.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Corners {
+    /// Unit shading normals.
+    pub normals: Option<[DVec3; 3]>,
+    /// Texture coordinates; barycentric ones where there are none.
+    pub uvs: Option<[DVec2; 3]>,
+}
+
+/// The surface of a triangle at barycentric coordinates. The geometric normal follows the corner normals where there are any
+/// (files wind their faces carelessly more often than they turn normals inside out), else the winding.
+pub fn surface_of(corners: [DVec3; 3], data: Corners, meet: &Meet) -> Surface {
+    let [a, b, c] = corners;
+    let weights = [1.0 - meet.a - meet.b, meet.a, meet.b];
+    let point = a * weights[0] + b * weights[1] + c * weights[2];
+    let spread = |p: DVec3, w: f64| (p * w).abs() + (p - point).abs() * w.abs();
+    let error = (spread(a, weights[0]) + spread(b, weights[1]) + spread(c, weights[2])) * gamma(8);
+    let wound = unit(normal_of(corners)).unwrap_or(DVec3::Y);
+    let total = data.normals.map_or(wound, |n| n[0] + n[1] + n[2]);
+    let geometric_normal = if total.dot(wound) < 0.0 { -wound } else { wound };
+    let blended = data.normals.map(|n| n[0] * weights[0] + n[1] * weights[1] + n[2] * weights[2]);
+    let normal = blended.and_then(DVec3::try_normalize).unwrap_or(geometric_normal);
+    let uvs = data.uvs.unwrap_or([DVec2::ZERO, DVec2::X, DVec2::Y]);
+    Surface {
+        point,
+        error,
+        geometric_normal,
+        normal,
+        tangent: tangent_of(corners, uvs),
+        uv: uvs[0] * weights[0] + uvs[1] * weights[1] + uvs[2] * weights[2],
+    }
+}
+
+/// ∂p/∂u; 0 where (u, v) is degenerate.
+fn tangent_of([a, b, c]: [DVec3; 3], uvs: [DVec2; 3]) -> DVec3 {
+    let (e, f) = (uvs[1] - uvs[0], uvs[2] - uvs[0]);
+    let determinant = accurate(e.x, f.y, e.y, f.x);
+    if determinant == 0.0 {
+        return DVec3::ZERO;
+    }
+    let along = ((b - a) * f.y - (c - a) * e.y) * determinant.signum();
+    if along.is_finite() { along } else { DVec3::ZERO }
+}
+
+/// A vector of any finite length but 0, normalised without overflow.
+fn unit(v: DVec3) -> Option<DVec3> {
+    let size = v.abs().max_element();
+    if !(size > 0.0 && size.is_finite()) {
+        return None;
+    }
+    (v / size).try_normalize()
+}
+
+/// A triangle on its own.
+#[derive(Clone, Copy, Debug)]
+pub struct Triangle(pub scene::Triangle);
+
+impl Triangle {
+    pub(super) fn meet(&self, ray: &LocalRay, limit: f64) -> Option<Meet> {
+        Sheared::new(ray).meet(self.0.vertices, limit)
+    }
+
+    pub(super) fn surface(&self, meet: &Meet) -> Surface {
+        surface_of(self.0.vertices, Corners { normals: self.0.normals, uvs: self.0.uvs }, meet)
+    }
+
+    pub(super) fn bounds(&self) -> Aabb {
+        bounds_of(self.0.vertices)
+    }
+}
+
+/// The box around corners: exact, as no arithmetic is done.
+pub fn bounds_of(corners: [DVec3; 3]) -> Aabb {
+    Aabb::of(corners)
+}

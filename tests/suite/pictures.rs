@@ -1,0 +1,229 @@
+//! Pictures as wholes: that they do not depend on what they must not depend on.
+
+use crate::stage::*;
+use glam::DVec3;
+use ogee::math::Affine;
+use ogee::render::Tracer;
+use ogee::render::camera::View;
+use ogee::render::film::Film;
+use ogee::render::sampler::Sampler;
+use ogee::render::settings::Crop;
+use ogee::render::tiles::{Picture, Progress, render, render_in_tiles};
+use ogee::scene::*;
+use ogee::world::{Ray, World};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+
+/// A bit of everything, with every length times `s`.
+fn still_life(s: f64) -> Vec<Node> {
+    let tinted = layered(0.0, |l| {
+        (l.transmit, l.fresnel) = (Texture::number(0.9), Fresnel::Exact);
+        l.absorb = Texture::Constant(Rgb::new(0.1, 0.7, 0.3) / s);
+    });
+    let shiny = layered(0.6, |l| {
+        (l.specular, l.exponent) = (Texture::number(0.3), Texture::number(30.0));
+        (l.reflect, l.fresnel) = (Texture::number(0.2), Fresnel::Schlick);
+    });
+    let v = |x, y, z| DVec3::new(x, y, z) * s;
+    let checker = Pattern {
+        kind: PatternKind::Checker(Texture::number(0.8), Texture::number(0.3)),
+        transform: Some(Box::new(Affine::scale(DVec3::splat(0.5 * s)))),
+        span: SPAN,
+    };
+    let floor = Arc::new(Material { diffuse: Texture::Pattern(Arc::new(checker)), layers: None, span: SPAN });
+    let turned = Affine::scale(DVec3::new(1.0, 1.5, 0.7))
+        .then(&Affine::rotate(DVec3::Y, 30.0))
+        .then(&Affine::translate(v(1.2, 0.8, -0.5)));
+    let spot = LightSource::Spot {
+        position: v(-2.0, 4.0, 2.0),
+        direction: DVec3::new(2.0, -3.5, -2.0).normalize(),
+        cone: [15.0, 25.0],
+        intensity: Rgb::splat(20.0) * s * s,
+    };
+    vec![
+        object(plane(DVec3::Y, 0.0), &floor),
+        object(sphere(v(0.0, 1.0, 0.0), s), &tinted),
+        object(sphere(v(-1.7, 0.6, 0.4), 0.6 * s), &shiny),
+        placed(cuboid(v(-0.4, -0.4, -0.4), v(0.4, 0.4, 0.4)), &diffuse(0.7), Some(turned)),
+        point(v(3.0, 5.0, 3.0), 40.0 * s * s),
+        light(spot),
+        sun(DVec3::new(-0.3, -1.0, 0.2), 0.4),
+        area(disc(v(-1.0, 3.0, -1.0), DVec3::new(0.3, -1.0, 0.3), 0.5 * s), 2.0, 4),
+        sky_samples(0.2, 4),
+    ]
+}
+
+fn still_camera(s: f64) -> Camera {
+    camera(DVec3::new(0.0, 1.8, 5.0) * s, DVec3::new(0.0, 0.8, 0.0) * s, 45.0)
+}
+
+fn bits(film: &Film) -> Vec<[u64; 3]> {
+    film.pixels.iter().map(|p| p.to_array().map(f64::to_bits)).collect()
+}
+
+fn still(scale: f64) -> Film {
+    let mut settings = settings([48, 36]);
+    settings.samples = 4;
+    picture(&world(still_life(scale)), &still_camera(scale), &settings)
+}
+
+#[test]
+fn a_scene_of_any_scale_gives_the_same_bits() {
+    let expected = still(1.0);
+    assert!(expected.mean().x > 0.05 && expected.mean().is_finite());
+    for power in [20, -20, 40, -40] {
+        let scaled = still(2f64.powi(power));
+        let differing = bits(&expected).iter().zip(&bits(&scaled)).filter(|(a, b)| a != b).count();
+        assert_eq!(differing, 0, "2^{power}");
+    }
+}
+
+#[test]
+fn threads_and_tiles_do_not_reach_a_pixel() {
+    let world = world(still_life(1.0));
+    let mut settings = settings([70, 50]);
+    settings.samples = 4;
+    let view = View::new(&still_camera(1.0), settings.size).unwrap();
+    let tracer = ogee::render::tracer(TracerKind::Whitted, &world, &settings).unwrap();
+    let mut expected = None;
+    for threads in [Some(1), Some(2), Some(3), Some(8), None] {
+        for tile in [7, 16, 32] {
+            settings.threads = threads;
+            let picture = Picture { world: &world, view: &view, tracer: &*tracer, settings: &settings };
+            let film = render_in_tiles(picture, tile, &(), &AtomicBool::new(false));
+            assert!(film.is_complete());
+            let found = (bits(&film), film.report.clone());
+            assert_eq!(
+                expected.get_or_insert_with(|| found.clone()),
+                &found,
+                "{threads:?} threads, tiles of {tile}"
+            );
+        }
+    }
+}
+
+#[test]
+fn a_crop_is_the_same_part_of_the_whole() {
+    let world = world(still_life(1.0));
+    let mut settings = settings([40, 30]);
+    settings.samples = 2;
+    let whole = picture(&world, &still_camera(1.0), &settings);
+    settings.crop = Crop { x: 11, y: 7, width: 17, height: 13 };
+    let part = picture(&world, &still_camera(1.0), &settings);
+    for (x, y) in (0..13).flat_map(|y| (0..17).map(move |x| (x, y))) {
+        assert_eq!(part.pixel(x, y), whole.pixel(x + 11, y + 7));
+    }
+}
+
+/// Shading normals as colours: a tracer that the library knows nothing of.
+struct Normals;
+
+impl Tracer for Normals {
+    fn radiance(&self, world: &World, ray: Ray, _: &mut Sampler) -> Rgb {
+        world.closest(&ray).map_or(Rgb::ZERO, |hit| (hit.normal + 1.0) / 2.0)
+    }
+}
+
+#[test]
+fn a_tracer_from_outside_renders() {
+    let world = world(vec![object(sphere(DVec3::ZERO, 1.0), &diffuse(0.5))]);
+    let film = picture_by(&Normals, &world, &camera(3.0 * DVec3::Z, DVec3::ZERO, 60.0), &settings([33, 33]));
+    assert_eq!(film.pixel(16, 16), Rgb::new(0.5, 0.5, 1.0));
+    assert_eq!(film.pixel(0, 0), Rgb::ZERO);
+    assert!(film.pixel(16, 8).y > 0.7 && film.pixel(24, 16).x > 0.7, "y is up and x to the right");
+}
+
+#[test]
+fn what_is_behind_the_camera_is_not_seen() {
+    let ball = || object(sphere(5.0 * DVec3::Z, 1.0), &glowing(1.0));
+    let sees = |look_at: DVec3| {
+        picture(&world(vec![ball()]), &camera(DVec3::ZERO, look_at, 60.0), &settings([16, 16])).mean().x
+    };
+    assert_eq!(sees(-DVec3::Z), 0.0);
+    assert!(sees(DVec3::Z) > 0.05);
+}
+
+#[test]
+fn a_plane_mirror_shows_the_scene_mirrored() {
+    let balls = |flip: f64| {
+        vec![
+            object(sphere(DVec3::new(0.5, flip, 0.2), 0.5), &diffuse(0.7)),
+            object(sphere(DVec3::new(-0.6, 1.4 * flip, -0.4), 0.4), &diffuse(0.4)),
+            sun(DVec3::new(0.4, -flip, -0.5), 3.0),
+        ]
+    };
+    let mut mirrored = balls(1.0);
+    mirrored.push(object(plane(DVec3::Y, 0.0), &mirror(1.0)));
+    let (eye, target) = (DVec3::new(0.3, 2.0, 6.0), DVec3::new(0.0, -1.2, 0.0));
+    let film = |nodes| picture(&world(nodes), &camera(eye, target, 20.0), &settings([64, 48]));
+    let (by_mirror, behind) = (film(mirrored), film(balls(-1.0)));
+    let lit = behind.pixels.iter().filter(|p| p.x > 0.0).count();
+    assert!(lit > 200);
+    // Shading agrees but for rounding; a pixel on an outline may fall to either side.
+    let differing =
+        by_mirror.pixels.iter().zip(&behind.pixels).filter(|(a, b)| (*a - *b).length() > 1e-9).count();
+    assert!(differing <= 2, "{differing} pixels differ");
+}
+
+/// Not a number in one column.
+struct Broken;
+
+impl Tracer for Broken {
+    fn radiance(&self, _: &World, ray: Ray, _: &mut Sampler) -> Rgb {
+        if (ray.direction.x / ray.direction.z).abs() < 0.05 { Rgb::splat(f64::NAN) } else { Rgb::ONE }
+    }
+}
+
+#[test]
+fn samples_that_are_not_finite_are_left_out_counted_and_placed() {
+    let world = world(vec![object(plane(DVec3::Y, -1.0), &diffuse(0.5))]);
+    let film = picture_by(&Broken, &world, &camera(DVec3::ZERO, -DVec3::Z, 90.0), &settings([31, 31]));
+    assert!(film.pixels.iter().all(|p| p.is_finite()));
+    assert_eq!(film.report.non_finite, 31);
+    assert_eq!(film.report.first_non_finite.unwrap().pixel, [15, 0]);
+}
+
+/// Cancels after the first tile.
+struct Impatient<'a>(&'a AtomicBool, AtomicUsize);
+
+impl Progress for Impatient<'_> {
+    fn tiles(&self, done: usize, total: usize) {
+        assert!(done <= total);
+        self.1.fetch_max(done, Ordering::Relaxed);
+        self.0.store(true, Ordering::Relaxed);
+    }
+}
+
+#[test]
+fn a_cancelled_picture_comes_back_as_far_as_it_is() {
+    let world = world(still_life(1.0));
+    let settings = settings([128, 128]);
+    let view = View::new(&still_camera(1.0), settings.size).unwrap();
+    let tracer = ogee::render::tracer(TracerKind::Whitted, &world, &settings).unwrap();
+    let cancel = AtomicBool::new(false);
+    let progress = Impatient(&cancel, AtomicUsize::new(0));
+    let picture = Picture { world: &world, view: &view, tracer: &*tracer, settings: &settings };
+    let film = render(picture, &progress, &cancel);
+    assert!(!film.is_complete() && film.share_finished() > 0.0);
+    let whole = render(picture, &(), &AtomicBool::new(false));
+    for (i, done) in film.finished.iter().enumerate() {
+        assert_eq!(film.pixels[i], if *done { whole.pixels[i] } else { Rgb::ZERO });
+    }
+}
+
+#[test]
+fn more_samples_come_nearer_to_the_picture() {
+    let world = world(still_life(1.0));
+    let at = |samples, seed| {
+        let mut settings = settings([24, 18]);
+        (settings.samples, settings.seed) = (samples, seed);
+        picture(&world, &still_camera(1.0), &settings)
+    };
+    let truth = at(256, 99);
+    let error = |film: &Film| {
+        film.pixels.iter().zip(&truth.pixels).map(|(a, b)| (*a - *b).length_squared()).sum::<f64>().sqrt()
+    };
+    let (few, many) = (error(&at(2, 1)), error(&at(32, 1)));
+    assert!(many < few / 3.0, "{few} {many}");
+    assert_ne!(bits(&at(2, 1)), bits(&at(2, 2)), "the seed matters");
+}

@@ -1,0 +1,186 @@
+//! Small scenes made in Rust, for tests of rays and light that need no text.
+
+use glam::DVec3;
+use ogee::diag::{SourceId, Span};
+use ogee::geometry::mesh::Mesh;
+use ogee::math::Affine;
+use ogee::render::camera::View;
+use ogee::render::film::Film;
+use ogee::render::sampler::Sampler;
+use ogee::render::settings::ResolvedSettings;
+use ogee::render::tiles::{Picture, render};
+use ogee::render::{Tracer, tracer};
+use ogee::scene::assets::DiskLoader;
+use ogee::scene::*;
+use ogee::world::{Ray, RayKind, World, WorldOptions};
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+
+/// Nowhere in particular.
+pub const SPAN: Span = Span { source: SourceId(0), start: 0, end: 0 };
+
+/// A material with a grey diffuse base.
+pub fn diffuse(albedo: f64) -> Arc<Material> {
+    Arc::new(Material { diffuse: Texture::number(albedo), layers: None, span: SPAN })
+}
+
+/// A material with layers, over a grey base.
+pub fn layered(albedo: f64, change: impl FnOnce(&mut Layers)) -> Arc<Material> {
+    let mut layers = Layers::DEFAULT;
+    change(&mut layers);
+    Arc::new(Material { diffuse: Texture::number(albedo), layers: Some(Box::new(layers)), span: SPAN })
+}
+
+/// A material that only shines.
+pub fn glowing(radiance: f64) -> Arc<Material> {
+    layered(0.0, |l| l.emit = Texture::number(radiance))
+}
+
+/// Clear glass.
+pub fn glass(ior: f64) -> Arc<Material> {
+    layered(0.0, |l| {
+        l.transmit = Texture::number(1.0);
+        l.ior = Texture::number(ior);
+        l.fresnel = Fresnel::Exact;
+    })
+}
+
+/// A mirror with a share.
+pub fn mirror(share: f64) -> Arc<Material> {
+    layered(0.0, |l| l.reflect = Texture::number(share))
+}
+
+pub fn object(shape: Shape, material: &Arc<Material>) -> Node {
+    placed(shape, material, None)
+}
+
+pub fn placed(shape: Shape, material: &Arc<Material>, transform: Option<Affine>) -> Node {
+    let mut object = Object::new(shape, SPAN);
+    object.material = Some(Arc::clone(material));
+    object.transform = transform.map(Box::new);
+    Node::Object(Arc::new(object))
+}
+
+pub fn sphere(center: DVec3, radius: f64) -> Shape {
+    Shape::Sphere { center, radius }
+}
+
+pub fn plane(normal: DVec3, offset: f64) -> Shape {
+    Shape::Plane { normal, offset }
+}
+
+pub fn disc(center: DVec3, normal: DVec3, radius: f64) -> Shape {
+    Shape::Disc(Box::new(Disc { center, normal: normal.normalize(), radius }))
+}
+
+pub fn rect(center: DVec3, a: DVec3, b: DVec3) -> Shape {
+    Shape::Rect(Box::new(Rect { center, a, b }))
+}
+
+pub fn cuboid(min: DVec3, max: DVec3) -> Shape {
+    Shape::Box(Box::new((min, max)))
+}
+
+pub fn mesh(mesh: Mesh) -> Shape {
+    Shape::Mesh(Arc::new(MeshSource::Inline(mesh)))
+}
+
+pub fn light(source: LightSource) -> Node {
+    light_with(source, |_| {})
+}
+
+pub fn light_with(source: LightSource, change: impl FnOnce(&mut Light)) -> Node {
+    let mut light = Light { source, falloff: None, shadow: true, samples: 16, transform: None, span: SPAN };
+    change(&mut light);
+    Node::Light(Arc::new(light))
+}
+
+pub fn point(position: DVec3, intensity: f64) -> Node {
+    light(LightSource::Point { position, intensity: Rgb::splat(intensity) })
+}
+
+pub fn sun(direction: DVec3, irradiance: f64) -> Node {
+    light(LightSource::Sun { direction: direction.normalize(), irradiance: Rgb::splat(irradiance) })
+}
+
+pub fn sky(radiance: f64) -> Node {
+    light(LightSource::Sky(Sky::Uniform(Rgb::splat(radiance))))
+}
+
+pub fn sky_samples(radiance: f64, samples: u32) -> Node {
+    light_with(LightSource::Sky(Sky::Uniform(Rgb::splat(radiance))), |l| l.samples = samples)
+}
+
+pub fn area(shape: Shape, radiance: f64, samples: u32) -> Node {
+    let object = Arc::new(Object::new(shape, SPAN));
+    light_with(LightSource::Area { object, radiance: Rgb::splat(radiance) }, |l| l.samples = samples)
+}
+
+/// The world of some nodes, which must have nothing wrong with them.
+pub fn world(nodes: Vec<Node>) -> World {
+    let (world, diagnostics) = World::new(nodes, &WorldOptions::default(), &DiskLoader);
+    assert!(diagnostics.is_empty(), "{diagnostics:?}");
+    world
+}
+
+/// Settings of a small picture, one sample a pixel, to be changed.
+pub fn settings(size: [u32; 2]) -> ResolvedSettings {
+    let none = RenderSettings::default();
+    let asked = RenderSettings { size: Some(size), samples: Some(1), ..none.clone() };
+    let mut settings = ResolvedSettings::new(&none, &asked);
+    settings.threads = Some(1);
+    settings
+}
+
+pub fn camera(eye: DVec3, look_at: DVec3, fov: f64) -> Camera {
+    Camera {
+        label: None,
+        eye,
+        look_at,
+        up: DVec3::Y,
+        fov,
+        projection: Projection::Perspective,
+        aperture: 0.0,
+        focus: None,
+        span: SPAN,
+    }
+}
+
+/// A picture by the settings' own tracer.
+pub fn picture(world: &World, camera: &Camera, settings: &ResolvedSettings) -> Film {
+    let tracer = tracer(settings.tracer, world, settings).expect("a tracer that is built");
+    picture_by(&*tracer, world, camera, settings)
+}
+
+/// A picture by any tracer.
+pub fn picture_by(tracer: &dyn Tracer, world: &World, camera: &Camera, settings: &ResolvedSettings) -> Film {
+    let view = View::new(camera, settings.size).expect("a camera that sees");
+    render(Picture { world, view: &view, tracer, settings }, &(), &AtomicBool::new(false))
+}
+
+/// What whitted sees along one ray, the mean of some camera samples, and the sampler of the last.
+pub fn seen_by(settings: &ResolvedSettings, world: &World, origin: DVec3, toward: DVec3) -> (Rgb, Sampler) {
+    let tracer = tracer(settings.tracer, world, settings).expect("a tracer that is built");
+    let ray =
+        Ray { origin, direction: (toward - origin).normalize(), t_max: f64::INFINITY, kind: RayKind::Camera };
+    let mut sum = Rgb::ZERO;
+    let mut last = Sampler::new(0, 0, 0, 0);
+    for sample in 0..settings.samples {
+        last = Sampler::new(settings.seed, 0, 0, sample);
+        sum += tracer.radiance(world, ray, &mut last);
+    }
+    (sum / f64::from(settings.samples), last)
+}
+
+/// The red of what whitted sees along one ray, to 64 segments.
+pub fn seen(world: &World, origin: DVec3, toward: DVec3) -> f64 {
+    let mut settings = settings([1, 1]);
+    settings.depth = 64;
+    seen_by(&settings, world, origin, toward).0.x
+}
+
+/// Fails unless `found` is within `tolerance` of `exact`.
+#[track_caller]
+pub fn near(found: f64, exact: f64, tolerance: f64) {
+    assert!((found - exact).abs() <= tolerance, "{found}, not {exact} ± {tolerance}");
+}
