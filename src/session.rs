@@ -3,13 +3,9 @@
 
 mod answer;
 pub mod inspect;
-<<<<<<< 9d608f7
 pub mod picture;
-pub mod whole;
-=======
 mod run;
-mod whole;
->>>>>>> fdd0656
+pub mod whole;
 
 use crate::diag::{Code, Diagnostic, SourceMap};
 use crate::scene::Scene;
