@@ -178,4 +178,32 @@ mod tests {
         assert!(!coloured.contains("\u{1b}[2J"));
         assert!(!short(&[fault], &sources).contains('\u{1b}'));
     }
+
+    #[test]
+    fn any_place_in_any_text_can_be_shown() {
+        const PIECES: [&str; 9] =
+            ["sphere {", "\n", "\r\n", "é", "\t", "\u{1b}[31m", "漢字", "x = 1 ", "// a long comment "];
+        let mut state = 7_u64;
+        let mut next = |n: usize| {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (state >> 33) as usize % n
+        };
+        for turn in 0..2_000 {
+            let text: String = (0..next(120)).map(|_| PIECES[next(PIECES.len())]).collect();
+            let mut sources = SourceMap::default();
+            let id = sources.add("any.scene", text.as_str());
+            let mut place = || {
+                let (a, b) = (next(text.len() + 1), next(text.len() + 1));
+                Span::new(id, a.min(b), a.max(b))
+            };
+            let fault = Diagnostic::new(Code::Syntax, place(), format!("turn {turn}"))
+                .label("here")
+                .also(place(), "there")
+                .also(place(), "and there");
+            let found = [fault];
+            assert!(human(&found, &sources, Style::plain(60)).contains("any.scene") || text.is_empty());
+            human(&found, &sources, Style { colour: true, width: 0 });
+            assert!(json(&found, &sources).lines().count() == 2 && short(&found, &sources).lines().count() == 1);
+        }
+    }
 }

@@ -175,23 +175,24 @@ fn can_share_excerpt(a: Span, b: Span, sources: &SourceMap) -> bool {
         && (a.start.abs_diff(b.start) < LONG_LINE as u32 / 2 || !(long(a) || long(b)))
 }
 
-/// The part of a span that is underlined: its first line, and at the end of the text its last character.
+/// The part of a span that is underlined: its first line, and at the end of the text its last character; whole characters.
 fn visible(span: Span, sources: &SourceMap) -> Span {
-    let text = sources.text(span.source).as_bytes();
-    let mut start = (span.start as usize).min(text.len());
-    if start == text.len() && text.ends_with(b"\n") {
+    let text = sources.text(span.source);
+    let whole = |mut at: usize| {
+        while !text.is_char_boundary(at) {
+            at -= 1;
+        }
+        at
+    };
+    let mut start = whole((span.start as usize).min(text.len()));
+    if start == text.len() && text.ends_with('\n') {
         start = text.trim_ascii_end().len();
     }
     let line = sources.line_index(span.source, start);
-    let line_end = sources.lines(span.source, line, line).end;
-    let end = (span.end as usize).clamp(start, line_end.max(start));
-    let trimmed = text[start..end].trim_ascii_end().len();
-    let long = trimmed.min(LONG_LINE);
-    let mut end = start + if trimmed == 0 { end - start } else { long };
-    while !sources.text(span.source).is_char_boundary(end) {
-        end -= 1;
-    }
-    Span::new(span.source, start, end)
+    let line_end = sources.lines(span.source, line, line).end.max(start);
+    let end = whole((span.end as usize).clamp(start, line_end).min(start + LONG_LINE));
+    let seen = text[start..end].trim_ascii_end().len();
+    Span::new(span.source, start, if seen == 0 { end } else { start + seen })
 }
 
 /// A file as miette asks for it.
