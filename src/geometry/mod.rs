@@ -1,5 +1,10 @@
-//! Shapes as numbers, without spans: meshes, bases, curves; patches and skeletons to come.
+//! Shapes as numbers, without spans: meshes, bases, curves and what is measured on them, patches; skeletons to come.
 
+pub mod arc_length;
 pub mod basis;
+pub mod closest;
 pub mod curve;
+pub mod frame;
+pub mod function;
 pub mod mesh;
+pub mod path;

@@ -44,16 +44,17 @@ pub(crate) fn any_across<P: Point>(tangent: P) -> P {
 }
 
 impl<P: Point> Curve<P> {
+    /// The piece that holds t; at a seam the one on that side.
+    pub(crate) fn piece_from(&self, t: f64, side: Side) -> &Piece<P> {
+        let after = self.pieces.partition_point(|piece| piece.start() <= t).saturating_sub(1);
+        let step_back = side == Side::Before && after > 0 && self.pieces[after].start() == t;
+        &self.pieces[if step_back { after - 1 } else { after }]
+    }
+
     /// The piece and the parameter in it, seen from a side.
     fn seen(&self, t: f64, side: Side) -> Result<(&Piece<P>, f64), CurveError> {
         let t = self.parameter(t)?;
-        let after = self.pieces.partition_point(|piece| piece.start() <= t).saturating_sub(1);
-        let index = if side == Side::Before && after > 0 && self.pieces[after].start() == t {
-            after - 1
-        } else {
-            after
-        };
-        Ok((&self.pieces[index], t))
+        Ok((self.piece_from(t, side), t))
     }
 
     /// γ′, γ″, γ‴ at t, from the piece on that side of a seam.
@@ -71,11 +72,6 @@ impl<P: Point> Curve<P> {
     /// γ″(t), per unit of the parameter squared. At a seam that of the piece after it.
     pub fn acceleration(&self, t: f64) -> Result<P, CurveError> {
         Ok(self.derivatives(t, Side::After)?[1])
-    }
-
-    /// |γ′(t)| in plain f64, for quadrature. t in the domain.
-    pub(crate) fn fast_speed(&self, t: f64) -> f64 {
-        self.piece_at(t).fast_velocity(t).length()
     }
 
     /// Unit tangent in the limit from a side; where γ′ vanishes, along the first derivative that does not. Zero for a piece that

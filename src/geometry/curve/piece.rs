@@ -144,7 +144,7 @@ impl<P: Point> Piece<P> {
     }
 
     /// Length of the control polygon: never less than that of the curve.
-    pub(crate) fn polygon_length(&self) -> f64 {
+    pub fn polygon_length(&self) -> f64 {
         let p = self.points();
         p.windows(2).map(|w| w[0].distance(w[1])).sum()
     }
