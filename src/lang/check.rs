@@ -101,13 +101,12 @@ pub fn unknown_property(kind: &Kind, name: &str, span: Span) -> Diagnostic {
     }
 }
 
-/// A property that takes several values also takes one list of them.
+/// A property that takes many values also takes one list of them, and so does one that takes several, unless it takes a list.
 fn flatten_list(property: &Property, given: &mut Given) {
-    let takes_lists =
-        property.takes.iter().any(|row| matches!(row, [Type::List | Type::Any | Type::Unbuilt]));
-    let several = property.many || property.takes.iter().any(|row| row.len() > 1);
     let [(Value::List(list), span)] = &given.values[..] else { return };
-    if several && !takes_lists {
+    let takes_list = property.takes.iter().any(|row| matches!(row, [Type::List | Type::Any | Type::Unbuilt]));
+    let several = property.takes.iter().any(|row| row.len() > 1);
+    if property.many || (several && !takes_list) {
         let (list, span) = (list.clone(), *span);
         given.values = list.iter().map(|v| (v.clone(), span)).collect();
     }

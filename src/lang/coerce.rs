@@ -3,6 +3,7 @@
 use super::table::{Context, Property, Reported, Type};
 use super::value::Value;
 use crate::diag::Span;
+pub use crate::geometry::mesh::unit;
 use crate::scene::{Pattern, PatternKind, Rgb, SampleInput, Texture};
 use glam::{DVec2, DVec3, DVec4};
 use std::rc::Rc;
@@ -196,16 +197,6 @@ fn direction(v: DVec3) -> Result<Value, Misfit> {
         expected: "a direction, a vector that is not 0".into(),
         hint: "write an axis such as `x`, `y`, `z` or `<0, 1, 0>`".into(),
     })
-}
-
-/// The unit vector along a vector; none for 0. Scaled first, so that no square overflows or vanishes.
-pub fn unit(v: DVec3) -> Option<DVec3> {
-    let largest = v.abs().max_element();
-    if largest == 0.0 || !v.is_finite() {
-        return None;
-    }
-    let scaled = v / largest;
-    Some(scaled / scaled.length())
 }
 
 fn colour(c: Rgb) -> Result<Value, Misfit> {

@@ -13,6 +13,8 @@ pub mod display;
 pub mod eval;
 pub mod kinds;
 pub mod limits;
+#[cfg(test)]
+mod mock;
 pub mod resolve;
 pub mod table;
 pub mod value;

@@ -167,4 +167,87 @@ mod tests {
             );
         }
     }
+
+    #[test]
+    fn values_never_change() {
+        let pinned = [
+            (random(&[0.0]), 0.6524484863740322),
+            (random(&[7.0, 3.0, 4.0]), 0.7934731917429363),
+            (random(&[7.5, -3.0]), 0.8500106945815213),
+            (noise(&[0.3]), 0.865232),
+            (noise(&[0.3, -1.7]), 0.4884934604252771),
+            (noise(&[0.3, -1.7, 12.25]), 0.34687426249820685),
+            (fbm(&[0.3, -1.7, 12.25], 5, 2.0, 0.5), -0.2178694646673703),
+        ];
+        for (i, (found, expected)) in pinned.into_iter().enumerate() {
+            assert_eq!(found, expected, "sample {i}");
+        }
+    }
+
+    #[test]
+    fn random_tells_order_count_and_sign_apart_but_not_zeros() {
+        assert_ne!(random(&[1.0, 2.0]), random(&[2.0, 1.0]));
+        assert_ne!(random(&[7.0]), random(&[7.0, 0.0]));
+        assert_ne!(random(&[1.0]), random(&[-1.0]));
+        assert_eq!(random(&[0.0, 1.0]), random(&[-0.0, 1.0]));
+    }
+
+    #[test]
+    fn random_is_evenly_spread_over_whole_numbers() {
+        let n = 100_000;
+        let mut bins = [0.0f64; 64];
+        let (mut sum, mut lagged, mut before) = (0.0, 0.0, 0.5);
+        for i in 0..n {
+            let x = random(&[11.0, f64::from(i)]);
+            assert!((0.0..1.0).contains(&x));
+            bins[(x * 64.0) as usize] += 1.0;
+            sum += x;
+            lagged += (x - 0.5) * (before - 0.5);
+            before = x;
+        }
+        let n = f64::from(n);
+        // Standard errors: 1/√(12 n) of the mean, 1/(12 √n) of the lagged product; χ² of 63 degrees lies below 104 but for 0.1 %.
+        assert!((sum / n - 0.5).abs() < 4.0 / (12.0 * n).sqrt());
+        assert!((lagged / n).abs() < 4.0 / (12.0 * n.sqrt()));
+        let chi2: f64 = bins.iter().map(|b| (b - n / 64.0) * (b - n / 64.0) / (n / 64.0)).sum();
+        assert!(chi2 < 104.0, "χ² = {chi2}");
+    }
+
+    #[test]
+    fn noise_is_symmetric_about_its_mean_and_uses_its_range() {
+        for dimensions in 1..=3 {
+            let n = 20_000;
+            let at = |i: i32, j: usize| random(&[f64::from(i), j as f64]) * 2000.0 - 1000.0;
+            let values: Vec<f64> =
+                (0..n).map(|i| gradient_noise(&[at(i, 0), at(i, 1), at(i, 2)][..dimensions], 0)).collect();
+            let mean = values.iter().sum::<f64>() / f64::from(n);
+            let spread = (values.iter().map(|x| x * x).sum::<f64>() / f64::from(n)).sqrt();
+            let skew =
+                values.iter().map(|x| x * x * x).sum::<f64>() / f64::from(n) / (spread * spread * spread);
+            assert!(values.iter().all(|x| x.abs() <= 1.0));
+            assert!(mean.abs() < 0.02 && skew.abs() < 0.1, "{dimensions}: mean {mean}, skew {skew}");
+            assert!((0.2..0.5).contains(&spread), "{dimensions}: {spread}");
+        }
+    }
+
+    #[test]
+    fn noise_is_smooth_over_cells_to_the_second_derivative() {
+        let h = 1e-3;
+        let f = |x: f64| gradient_noise(&[x, 0.4, 7.3], 0);
+        let second = |x: f64| (f(x + h) - 2.0 * f(x) + f(x - h)) / (h * h);
+        for cell in -3..4 {
+            let edge = f64::from(cell);
+            let jump = second(edge + 2.0 * h) - second(edge - 2.0 * h);
+            // The third derivative of the fade is at most 60, over 4 h.
+            assert!(jump.abs() < 60.0 * 4.0 * h * 2.0, "{cell}: {jump}");
+            assert_eq!(gradient_noise(&[edge, 2.0, -5.0], 0), 0.0);
+        }
+    }
+
+    #[test]
+    fn far_points_have_values_too() {
+        for x in [1e15, 1e18, 1e300, -1e300] {
+            assert!(noise(&[x, 0.5, -x]).is_finite());
+        }
+    }
 }

@@ -120,9 +120,8 @@ fn rule(pattern: &Pattern, at: &TexturePoint, reading: Reading) -> Sampled<Rgb> 
         PatternKind::Gradient(a, b) => mix(a, b, p.y, at, reading),
         PatternKind::Ramp(input, stops) => ramp(number(input, at)?, stops, at, reading),
         PatternKind::Image(image) => from_picture(image, at.uv, reading),
-        PatternKind::Noise(a, b) | PatternKind::Marble(a, b) | PatternKind::Wood(a, b) => {
-            mix(a, b, 0.5, at, reading)
-        }
+        PatternKind::Noise(a, b) => mix(a, b, crate::math::noise::noise(&p.to_array()), at, reading),
+        PatternKind::Marble(a, b) | PatternKind::Wood(a, b) => mix(a, b, 0.5, at, reading),
         PatternKind::Function(function) => call(function, at),
     }
 }

@@ -122,6 +122,12 @@ pub fn default_value(written: &str) -> Option<Value> {
     }
 }
 
+/// One value for each parameter: its default, or a stand-in where it must be given.
+pub fn defaults(builtin: &Builtin) -> Vec<Value> {
+    let of = |written: &str| default_value(written).expect("the table's defaults are literals or constants");
+    builtin.parameters.iter().map(|p| p.default.map_or(Value::Bool(false), of)).collect()
+}
+
 /// Computes a call whose arguments stand in the order of the parameters, defaults filled in. Reports arguments of the wrong
 /// type, and arguments at which the function is undefined.
 pub fn call(ctx: &mut dyn Context, builtin: &'static Builtin, arguments: &Arguments<'_>) -> Outcome {

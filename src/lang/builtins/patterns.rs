@@ -74,7 +74,7 @@ pub static ALL: &[Builtin] = &[
         "from_hit",
         &[Parameter::new("f", "a function of one parameter")],
         General(from_hit),
-        "A pattern from a function of the whole hit: `h.p` the point in the object's own space, `h.n` the normal, `h.uv`, `h.t` \
+        "A pattern from a function of the whole hit: `h.p` the point in the world, `h.n` the normal, `h.uv`, `h.t` \
          the distance along the ray.",
         ("from_hit(h => abs(h.n))", "a pattern"),
     ),
@@ -228,23 +228,4 @@ fn choice<T: Copy>(
 fn from_hit(ctx: &mut dyn Context, arguments: &Arguments<'_>) -> Outcome {
     let function = ctx.sampled(&arguments.values[0], SampleInput::Hit, &[1, 3], arguments.spans[0])?;
     Ok(made(PatternKind::Function(function), arguments.span))
-}
-
-/// The same texture with its pictures read as numbers and not as colours.
-pub fn as_data(texture: Texture) -> Texture {
-    let Texture::Pattern(pattern) = texture else { return texture };
-    let kind = match pattern.kind.clone() {
-        PatternKind::Checker(a, b) => PatternKind::Checker(as_data(a), as_data(b)),
-        PatternKind::Stripes(all) => PatternKind::Stripes(all.into_iter().map(as_data).collect()),
-        PatternKind::Gradient(a, b) => PatternKind::Gradient(as_data(a), as_data(b)),
-        PatternKind::Ramp(source, stops) => {
-            PatternKind::Ramp(as_data(source), stops.into_iter().map(|(t, c)| (t, as_data(c))).collect())
-        }
-        PatternKind::Image(image) => PatternKind::Image(ImagePattern { colour: false, ..image }),
-        PatternKind::Marble(a, b) => PatternKind::Marble(as_data(a), as_data(b)),
-        PatternKind::Wood(a, b) => PatternKind::Wood(as_data(a), as_data(b)),
-        PatternKind::Noise(a, b) => PatternKind::Noise(as_data(a), as_data(b)),
-        PatternKind::Function(function) => PatternKind::Function(function),
-    };
-    Texture::Pattern(Arc::new(Pattern { kind, transform: pattern.transform.clone(), span: pattern.span }))
 }

@@ -86,18 +86,20 @@ fn dot_of(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
-/// Scaled by the largest component where squares would overflow or vanish.
+/// A power of two by which components are scaled where their squares would overflow or vanish: exact, and far enough for all
+/// exponents of f64, −1074 … 1023.
+const FAR: f64 = f64::from_bits((1023 + 600) << 52);
+
 fn length_of(v: &[f64]) -> f64 {
-    let plain = dot_of(v, v).sqrt();
-    if plain.is_normal() && plain < f64::MAX {
-        return plain;
+    let squares = dot_of(v, v);
+    let scaled = |factor: f64| v.iter().map(|x| (x * factor) * (x * factor)).sum::<f64>().sqrt() / factor;
+    if squares.is_infinite() {
+        scaled(1.0 / FAR)
+    } else if squares < 1.0 / FAR {
+        scaled(FAR)
+    } else {
+        squares.sqrt()
     }
-    let largest = v.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
-    if largest == 0.0 || !largest.is_finite() {
-        return largest;
-    }
-    let scaled: f64 = v.iter().map(|x| (x / largest) * (x / largest)).sum();
-    largest * scaled.sqrt()
 }
 
 fn dot(of: &[f64], to: &mut [f64]) {

@@ -91,7 +91,8 @@ const ANGLE: Type = Type::Number { min: 0.0, max: 180.0 };
 /// Samples of an area or sky light where none are given.
 const DEFAULT_SAMPLES: u64 = 16;
 
-const SOURCES: [&str; 5] = ["point", "spot", "sun", "area", "sky"];
+/// The properties of which a light has exactly one.
+pub const SOURCES: [&str; 5] = ["point", "spot", "sun", "area", "sky"];
 
 /// The property of a source's strength, and the sources to which it belongs.
 const STRENGTHS: [(&str, &[&str]); 3] =

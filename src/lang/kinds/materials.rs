@@ -95,23 +95,22 @@ fn layers(block: &Block) -> Option<Box<Layers>> {
     }
     let d = Layers::DEFAULT;
     let texture = |name: &str, default: Texture| block.texture(name).unwrap_or(default);
-    let data = |name: &str, default: Texture| block.data_texture(name).unwrap_or(default);
     Some(Box::new(Layers {
         ambient: texture("ambient", d.ambient),
         specular: texture("specular", d.specular),
-        exponent: data("exponent", Texture::ZERO),
+        exponent: texture("exponent", Texture::ZERO),
         lobe: lobe(block),
         reflect: texture("reflect", d.reflect),
         fresnel: fresnel(block),
         transmit: texture("transmit", d.transmit),
-        ior: data("ior", d.ior),
+        ior: texture("ior", d.ior),
         absorb: texture("absorb", d.absorb),
-        roughness: data("roughness", d.roughness),
+        roughness: texture("roughness", d.roughness),
         metal: texture("metal", d.metal),
         emit: texture("emit", d.emit),
-        opacity: data("opacity", d.opacity),
-        normal_map: block.data_texture("normal_map"),
-        bump: block.data_texture("bump"),
+        opacity: texture("opacity", d.opacity),
+        normal_map: block.texture("normal_map"),
+        bump: block.texture("bump"),
     }))
 }
 

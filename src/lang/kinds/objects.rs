@@ -7,7 +7,6 @@ use crate::lang::coerce;
 use crate::lang::table::{Block, Context, Kind, Outcome, Property, Reported, Role, Type};
 use crate::lang::value::Value;
 use crate::scene::{MeshSource, Shape};
-use glam::DVec3;
 use std::sync::Arc;
 
 /// A mesh.
@@ -30,7 +29,7 @@ pub static MESH: Kind = Kind {
             "faces",
             &[&[Type::Any]],
             "",
-            "which corners make each face, counted from 0: vectors of 3 or 4 (or lists of more, flat and simple), \
+            "which corners make each face, counted from 0: vectors of 3 or 4 (or lists of more, in one plane), \
              counterclockwise seen from outside",
         )
         .many(),
@@ -104,7 +103,24 @@ pub fn existing_file(
 
 fn inline_mesh(ctx: &mut dyn Context, block: &Block) -> Outcome<Mesh> {
     let positions = block.vectors("vertices").expect("just looked up");
-    let Some(faces) = block.get("faces") else {
+    let faces = face_list(ctx, block, positions.len())?;
+    let normals = per_vertex(ctx, block, "normals", block.vectors("normals"), positions.len())?;
+    let uvs = per_vertex(ctx, block, "uvs", block.vectors2("uvs"), positions.len())?;
+    let mut mesh = Mesh::from_faces(positions, faces, normals, uvs).map_err(|error| {
+        let hint = "a face needs three corners that are not in one line";
+        block.fault(ctx, Code::BadGeometry, "faces", format!("this mesh cannot be used: {error}"), hint)
+    })?;
+    match block.flag("smooth") {
+        Some(true) if mesh.normals.is_empty() => mesh.compute_normals(),
+        Some(false) => mesh.normals.clear(),
+        _ => {}
+    }
+    Ok(mesh)
+}
+
+/// The faces' vertex numbers; every fault of them is reported.
+fn face_list(ctx: &mut dyn Context, block: &Block, n_vertices: usize) -> Outcome<Vec<Vec<u32>>> {
+    let Some(given) = block.get("faces") else {
         let said = Diagnostic::new(
             Code::MissingProperty,
             block.kind_span,
@@ -114,23 +130,15 @@ fn inline_mesh(ctx: &mut dyn Context, block: &Block) -> Outcome<Mesh> {
         .hint("write the faces by the vertices' numbers from 0: `faces [<0, 1, 2>]`");
         return Err(ctx.fail(said));
     };
-    let mut triangles = Vec::new();
+    let mut faces = Vec::with_capacity(given.values.len());
     let mut outcome = Ok(());
-    for (value, span) in &faces.values {
-        match face_corners(ctx, value, positions.len(), *span) {
-            Ok(corners) => triangulate(&positions, &corners, &mut triangles),
+    for (value, span) in &given.values {
+        match face_corners(ctx, value, n_vertices, *span) {
+            Ok(corners) => faces.push(corners),
             Err(reported) => outcome = Err(reported),
         }
     }
-    outcome?;
-    let normals = per_vertex(ctx, block, "normals", block.vectors("normals"), positions.len())?;
-    let uvs = per_vertex(ctx, block, "uvs", block.vectors2("uvs"), positions.len())?;
-    let normals = match block.flag("smooth") {
-        Some(true) if normals.is_empty() => smooth_normals(&positions, &triangles),
-        Some(false) => Vec::new(),
-        _ => normals,
-    };
-    Ok(Mesh { positions, normals, uvs, triangles, ..Mesh::default() })
+    outcome.map(|()| faces)
 }
 
 fn per_vertex<T>(
@@ -199,32 +207,4 @@ fn corner(
     let said =
         Diagnostic::new(Code::BadProperty, span, message).hint("vertices are counted from 0, not from 1");
     Err(ctx.fail(said))
-}
-
-/// A fan from the first corner for triangles, the shorter diagonal for quadrangles; repeated corners make no triangle.
-fn triangulate(positions: &[DVec3], corners: &[u32], triangles: &mut Vec<[u32; 3]>) {
-    let at = |i: usize| positions[corners[i] as usize];
-    let turned = corners.len() == 4 && at(0).distance_squared(at(2)) > at(1).distance_squared(at(3));
-    let n = corners.len();
-    let order: Vec<u32> = (0..n).map(|i| corners[(i + usize::from(turned)) % n]).collect();
-    for pair in order[1..].windows(2) {
-        let [a, b, c] = [order[0], pair[0], pair[1]];
-        if a != b && b != c && c != a {
-            triangles.push([a, b, c]);
-        }
-    }
-}
-
-/// Unit normals as sums of the faces' area vectors; where they cancel, the first face's.
-fn smooth_normals(positions: &[DVec3], triangles: &[[u32; 3]]) -> Vec<DVec3> {
-    let area = |t: &[u32; 3]| {
-        let [a, b, c] = t.map(|i| positions[i as usize]);
-        (b - a).cross(c - a)
-    };
-    let mut sums = vec![DVec3::ZERO; positions.len()];
-    for triangle in triangles {
-        let n = area(triangle);
-        triangle.iter().for_each(|i| sums[*i as usize] += n);
-    }
-    sums.into_iter().map(|n| coerce::unit(n).unwrap_or(DVec3::Y)).collect()
 }

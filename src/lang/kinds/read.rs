@@ -106,11 +106,6 @@ impl Block {
         self.value(name).map(|v| coerce::texture(v).expect("checked to be a texture"))
     }
 
-    /// Its texture with numbers that are no colours: images in it are read as linear data.
-    pub fn data_texture(&self, name: &str) -> Option<Texture> {
-        self.texture(name).map(crate::lang::builtins::patterns::as_data)
-    }
-
     /// Its colour.
     pub fn colour(&self, name: &str) -> Option<Rgb> {
         self.vector(name)

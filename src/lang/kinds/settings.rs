@@ -97,23 +97,25 @@ fn looks_at_itself(ctx: &mut dyn Context, block: &Block) -> crate::lang::table::
     ctx.fail(if at == "look_at" { said.also(block.place("eye"), "`eye` is here") } else { said })
 }
 
-/// Up as given. Where none is given and the camera looks straight up or down, the side of −z or z, as on a map.
-fn up(ctx: &mut dyn Context, block: &Block, view: DVec3) -> Outcome<DVec3> {
+/// Up where none is given: y; where the camera looks straight up or down, the side of −z or z, as on a map.
+pub fn default_up(view: DVec3) -> DVec3 {
+    if along(view, DVec3::Y) { DVec3::Z * view.y.signum() } else { DVec3::Y }
+}
+
+/// True for parallel directions, up to the rounding of their cross product.
+fn along(view: DVec3, up: DVec3) -> bool {
     let view = coerce::unit(view).unwrap_or(DVec3::NEG_Z);
-    let along = |up: DVec3| view.cross(up).length() <= 4.0 * crate::math::error::UNIT_ROUNDOFF;
+    view.cross(up).length() <= 4.0 * crate::math::error::UNIT_ROUNDOFF
+}
+
+fn up(ctx: &mut dyn Context, block: &Block, view: DVec3) -> Outcome<DVec3> {
     match block.vector("up") {
-        None if along(DVec3::Y) => Ok(DVec3::Z * view.y.signum()),
-        None => Ok(DVec3::Y),
-        Some(up) if along(up) => {
-            let try_this = if view.z.abs() < 0.5 { "z" } else { "y" };
+        None => Ok(default_up(view)),
+        Some(up) if along(view, up) => {
+            let try_this = if view.z.abs() < 0.5 * view.length() { "z" } else { "y" };
             let message = "`up` points along the view, so that no side of the picture is up";
-            Err(block.fault(
-                ctx,
-                Code::BadProperty,
-                "up",
-                message,
-                format!("write `up {try_this}`, or leave it out"),
-            ))
+            let hint = format!("write `up {try_this}`, or leave it out");
+            Err(block.fault(ctx, Code::BadProperty, "up", message, hint))
         }
         Some(up) => Ok(up),
     }

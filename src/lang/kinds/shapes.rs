@@ -5,6 +5,7 @@ use crate::diag::{Code, Diagnostic};
 use crate::lang::coerce;
 use crate::lang::table::{Block, Context, Kind, Outcome, Property, Role, Type};
 use crate::lang::value::Value;
+use crate::math::Affine;
 use crate::scene::{Cone, Disc, Object, Rect, Shape, Torus, Triangle};
 use glam::DVec3;
 use std::sync::Arc;
@@ -192,6 +193,15 @@ pub static TRIANGLE: Kind = solid(
     ],
     triangle,
 );
+
+/// A transform after another, where there is one.
+pub fn after(before: Option<&Affine>, next: Option<Affine>) -> Option<Box<Affine>> {
+    match (before, next) {
+        (Some(before), Some(next)) => Some(Box::new(before.then(&next))),
+        (None, Some(next)) => Some(Box::new(next)),
+        (before, None) => before.copied().map(Box::new),
+    }
+}
 
 /// An object of a shape, with the common properties applied.
 pub fn finish(ctx: &mut dyn Context, block: &Block, shape: Shape) -> Outcome {

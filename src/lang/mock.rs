@@ -1,0 +1,132 @@
+//! A context for tests of the tables: it keeps what is reported and printed, and every file is there.
+
+use super::table::{Arguments, Block, Builtin, Context, Kind, Outcome, Reported};
+use super::value::{Given, Value};
+use crate::diag::{Diagnostic, SourceId, Span};
+use crate::scene::assets::Loader;
+use crate::scene::{SampleInput, SampledFunction};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// What was said.
+#[derive(Default)]
+pub struct Mock {
+    /// Diagnostics.
+    pub said: Vec<Diagnostic>,
+    /// Prints.
+    pub printed: Vec<String>,
+}
+
+struct EveryFile;
+
+impl Loader for EveryFile {
+    fn read(&self, _: &Path) -> std::io::Result<Vec<u8>> {
+        Ok(Vec::new())
+    }
+
+    fn exists(&self, path: &Path) -> bool {
+        !path.to_string_lossy().contains("missing")
+    }
+}
+
+impl Context for Mock {
+    fn report(&mut self, diagnostic: Diagnostic) {
+        self.said.push(diagnostic);
+    }
+
+    fn call(&mut self, function: &Value, arguments: &[Value], at: Span) -> Outcome {
+        let Value::Builtin(builtin) = function else { return Err(Reported) };
+        let spans = vec![at; arguments.len()];
+        super::builtins::call(self, builtin, &Arguments { values: arguments, spans: &spans, span: at })
+    }
+
+    fn arity(&self, function: &Value) -> Option<(usize, usize)> {
+        matches!(function, Value::Builtin(_)).then_some((1, 1))
+    }
+
+    fn path(&self, written: &str, _: Span) -> PathBuf {
+        Path::new("scenes").join(written)
+    }
+
+    fn loader(&self) -> &dyn Loader {
+        &EveryFile
+    }
+
+    fn print(&mut self, text: String) {
+        self.printed.push(text);
+    }
+
+    fn sampled(&mut self, _: &Value, _: SampleInput, _: &[usize], _: Span) -> Outcome<Arc<SampledFunction>> {
+        Err(Reported)
+    }
+
+    fn reserve(&mut self, _: usize, _: Span) -> Outcome<()> {
+        Ok(())
+    }
+
+    fn time(&self) -> (f64, f64) {
+        (0.0, 0.0)
+    }
+}
+
+impl Mock {
+    /// Codes of all that was said, in order.
+    pub fn codes(&self) -> Vec<&'static str> {
+        self.said.iter().map(|d| d.code.text()).collect()
+    }
+
+    /// Calls a builtin.
+    pub fn builtin(&mut self, name: &str, values: &[Value]) -> Outcome {
+        let builtin: &'static Builtin = super::builtins::find(name).expect("a builtin");
+        let spans: Vec<Span> = (0..values.len()).map(|i| span(10 * i)).collect();
+        super::builtins::call(self, builtin, &Arguments { values, spans: &spans, span: span(0) })
+    }
+}
+
+/// A place.
+pub fn span(start: usize) -> Span {
+    Span::new(SourceId(0), start, start + 5)
+}
+
+/// Properties, each at a place of its own.
+pub fn given(properties: &[(&str, &[Value])]) -> Vec<Given> {
+    let each = |(i, (name, values)): (usize, &(&str, &[Value]))| Given {
+        name: (*name).into(),
+        name_span: span(100 * (i + 1)),
+        values: values
+            .iter()
+            .enumerate()
+            .map(|(j, v)| (v.clone(), span(100 * (i + 1) + 10 * (j + 1))))
+            .collect(),
+    };
+    properties.iter().enumerate().map(each).collect()
+}
+
+/// A block of a kind.
+pub fn block(name: &str, properties: &[(&str, &[Value])]) -> Block {
+    let kind: &'static Kind = super::kinds::find(name).expect("a kind");
+    Block {
+        kind,
+        span: span(0),
+        kind_span: span(0),
+        label: None,
+        given: given(properties),
+        children: Vec::new(),
+        poisoned: Vec::new(),
+    }
+}
+
+/// A number.
+pub fn n(x: f64) -> Value {
+    Value::Number(x)
+}
+
+/// A 3-vector.
+pub fn v(x: f64, y: f64, z: f64) -> Value {
+    Value::Vector3(glam::DVec3::new(x, y, z))
+}
+
+/// A bare word.
+pub fn w(word: &str) -> Value {
+    Value::Word(word.into())
+}
