@@ -115,7 +115,7 @@ impl Whitted {
         let Some(hit) = world.closest(&task.ray) else {
             return Ok(task.weight * task.inside.kept(f64::INFINITY) * self.beyond(&task.ray));
         };
-        let bsdf = Bsdf::at(&hit, -task.ray.direction)?;
+        let bsdf = Bsdf::at(world, &hit, &task.ray)?;
         let weight = task.weight * task.inside.or_in(&bsdf).kept(hit.t);
         if bsdf.opacity < 1.0 {
             let past = Task {

@@ -440,3 +440,43 @@ fn a_rough_mirror_blurs_and_keeps_its_light() {
     );
     assert!(on > 10.0 * off && on > 0.1, "{on} {off}");
 }
+
+/// A texture that is a function of the point, given by its tape.
+fn grooves(depth: f64, across: f64) -> Texture {
+    let slabs = PatternKind::Gradient(Texture::number(0.0), Texture::number(depth));
+    let along_y = ogee::math::Affine::scale(DVec3::new(1.0, across, 1.0));
+    Texture::Pattern(std::sync::Arc::new(Pattern { kind: slabs, transform: Some(Box::new(along_y)), span: SPAN }))
+}
+
+#[test]
+fn a_bump_tilts_the_normal_by_the_slope_of_its_height() {
+    // The height rises by 0.5 over 2 units of y on a wall that faces z: the normal is (0, −1/4, 1), normalised.
+    let bumpy = layered(1.0, |l| l.bump = Some(grooves(0.5, 2.0)));
+    let toward = DVec3::new(0.0, 0.6, 0.8);
+    let world = world(vec![object(rect(Y, X, Y), &bumpy), sun(-toward, PI)]);
+    let exact = DVec3::new(0.0, -0.25, 1.0).normalize().dot(toward);
+    for (x, y) in [(0.0, 1.0), (0.7, 0.3), (0.999, 1.3)] {
+        let p = DVec3::new(x, y, 0.0);
+        near(seen(&world, p + Z, p), exact, 1e-9);
+    }
+}
+
+#[test]
+fn textured_lights_shine_as_they_look() {
+    let halves = Pattern {
+        kind: PatternKind::Checker(Texture::number(2.0), Texture::number(0.0)),
+        transform: Some(Box::new(ogee::math::Affine::scale(100.0 * DVec3::ONE).then(&ogee::math::Affine::translate(50.0 * X)))),
+        span: SPAN,
+    };
+    let material = layered(0.0, |l| l.emit = Texture::Pattern(std::sync::Arc::new(halves)));
+    let world = world(vec![
+        object(plane(Y, 0.0), &diffuse(1.0)),
+        object(rect(Y, 0.5 * X, 0.5 * Z), &material),
+    ]);
+    // Half of the unit square over the middle, at twice the radiance.
+    let mut many = settings([1, 1]);
+    many.samples = 1024;
+    near(seen_by(&many, &world, DVec3::new(1e-3, 0.5, 0.0), DVec3::ZERO).0.x, 0.239456, 2e-3);
+    near(seen(&world, DVec3::new(0.25, 0.5, 0.0), DVec3::new(0.25, 1.0, 0.0)), 2.0, 0.0);
+    near(seen(&world, DVec3::new(-0.25, 0.5, 0.0), DVec3::new(-0.25, 1.0, 0.0)), 0.0, 0.0);
+}

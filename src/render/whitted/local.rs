@@ -8,6 +8,7 @@ use crate::world::light::{Light, LightSample};
 use crate::world::texture::Sampled;
 use crate::world::{Hit, Ray, World};
 use glam::DVec2;
+use std::cell::Cell;
 
 impl Whitted {
     /// Radiance that the surface sends on from all lights. `first`: seen by the camera itself.
@@ -73,7 +74,7 @@ impl Whitted {
         }
         let ray = sample.shadow_ray(hit);
         if self.clear_shadows {
-            return Ok(sent * passed(world, ray, sampler)?);
+            return Ok(sent * passed(world, &ray, sampler)?);
         }
         sampler.rays.shadow += 1;
         Ok(if world.occluded(&ray) { Rgb::ZERO } else { sent })
@@ -81,17 +82,24 @@ impl Whitted {
 }
 
 /// Share of light that passes along a shadow ray, through whatever is not opaque.
-fn passed(world: &World, mut ray: Ray, sampler: &mut Sampler) -> Sampled<Rgb> {
-    let mut share = Rgb::ONE;
-    while share != Rgb::ZERO {
-        sampler.rays.shadow += 1;
-        let Some(hit) = world.closest(&ray) else { return Ok(share) };
-        let bsdf = Bsdf::at(&hit, -ray.direction)?;
-        if !bsdf.outside && bsdf.is_transmissive() {
-            share *= kept(bsdf.absorb, hit.t);
-        }
-        share *= bsdf.straight_through();
-        ray = Ray { t_max: ray.t_max - hit.t, ..hit.spawn(ray.direction, ray.kind) };
-    }
-    Ok(share)
+fn passed(world: &World, ray: &Ray, sampler: &mut Sampler) -> Sampled<Rgb> {
+    let fault = Cell::new(None);
+    let n_rays = Cell::new(1);
+    let share = world.transmittance(ray, |hit| {
+        n_rays.set(n_rays.get() + 1);
+        through(world, hit, ray).unwrap_or_else(|e| {
+            fault.set(Some(e));
+            Rgb::ZERO
+        })
+    });
+    sampler.rays.shadow += n_rays.get();
+    fault.take().map_or(Ok(share), Err)
+}
+
+/// Share of light that passes a surface, less what was absorbed on the way to it from within.
+fn through(world: &World, hit: &Hit<'_>, ray: &Ray) -> Sampled<Rgb> {
+    let bsdf = Bsdf::at(world, hit, ray)?;
+    let from_within = !bsdf.outside && bsdf.is_transmissive();
+    let arrived = if from_within { kept(bsdf.absorb, hit.t) } else { Rgb::ONE };
+    Ok(arrived * bsdf.straight_through())
 }

@@ -10,6 +10,7 @@ mod normal;
 
 use super::hit::Hit;
 use super::texture::{self, Sampled, TexturePoint};
+use super::{Ray, World};
 use crate::scene::{Fresnel, Lobe, Material, Rgb};
 use fresnel::{reflect, refract};
 use glam::{DVec2, DVec3};
@@ -71,9 +72,10 @@ pub struct Scattered {
 }
 
 impl Bsdf {
-    /// A material where a ray met it, seen along the unit vector `wo`.
-    pub fn at(hit: &Hit<'_>, wo: DVec3) -> Sampled<Bsdf> {
+    /// The material where a ray met it. The world is only asked where a bump map needs its neighbourhood.
+    pub fn at(world: &World, hit: &Hit<'_>, ray: &Ray) -> Sampled<Bsdf> {
         let material = hit.material;
+        let wo = -ray.direction;
         let outside = wo.dot(hit.geometric_normal) >= 0.0;
         let side = if outside { 1.0 } else { -1.0 };
         let geometric = hit.geometric_normal * side;
@@ -87,7 +89,8 @@ impl Bsdf {
             ..Bsdf::BARE
         };
         if material.layers.is_some() {
-            bsdf.add_layers(material, hit, &at, side)?;
+            bsdf.add_layers(material, &at)?;
+            bsdf.bend_normal(world, hit, ray, &at)?;
         }
         Ok(bsdf)
     }
@@ -112,13 +115,7 @@ impl Bsdf {
         mirror: Mirror::None,
     };
 
-    fn add_layers(
-        &mut self,
-        material: &Material,
-        hit: &Hit<'_>,
-        at: &TexturePoint,
-        side: f64,
-    ) -> Sampled<()> {
+    fn add_layers(&mut self, material: &Material, at: &TexturePoint) -> Sampled<()> {
         let layers = material.layers();
         let colour = |t| texture::colour(t, at);
         let number = |t| texture::number(t, at);
@@ -139,7 +136,12 @@ impl Bsdf {
         if !matches!(self.mirror, Mirror::None) {
             self.roughness = number(&layers.roughness)?.max(0.0);
         }
-        if let Some(n) = normal::mapped(hit, layers, at)? {
+        Ok(())
+    }
+
+    fn bend_normal(&mut self, world: &World, hit: &Hit<'_>, ray: &Ray, at: &TexturePoint) -> Sampled<()> {
+        if let Some(n) = normal::bent(world, hit, ray, at)? {
+            let side = if self.outside { 1.0 } else { -1.0 };
             self.normal = normal::facing(n * side, self.geometric, self.wo);
         }
         Ok(())

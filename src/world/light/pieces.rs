@@ -3,11 +3,11 @@
 
 use super::SurfacePoint;
 use crate::math::Affine;
-use crate::math::elementary::sin_cos;
+use crate::math::elementary::{atan2, sin_cos};
 use crate::math::error::gamma;
 use crate::scene::{Cone, Torus};
 use glam::{DVec2, DVec3};
-use std::f64::consts::TAU;
+use std::f64::consts::{PI, TAU};
 
 /// A piece of surface.
 #[derive(Clone, Debug)]
@@ -66,7 +66,8 @@ impl Piece {
                 let (s, c) = sin_cos(TAU * u.y);
                 let r = u.x.sqrt();
                 let area = TAU / 2.0 * a.cross(*b).length();
-                flat(*center, *a * (r * c), *b * (r * s), *normal, area, DVec2::new(u.y, r))
+                let uv = (DVec2::new(r * c, r * s) + 1.0) / 2.0;
+                flat(*center, *a * (r * c), *b * (r * s), *normal, area, uv)
             }
             Piece::Triangle { corner, edges: [e, f], normal, uvs } => {
                 let r = u.x.sqrt();
@@ -100,7 +101,11 @@ impl Curved {
         let error = (m * size + place.translation.abs()) * gamma(24);
         let area = (linear * du).cross(linear * dv).length();
         let at = SurfacePoint { point, error, normal: place.normal(normal).normalize() };
-        PiecePoint { at, area, uv: u }
+        let uv = match self {
+            Curved::Sphere { .. } => sphere_uv(normal),
+            Curved::Side { .. } | Curved::Torus { .. } => u,
+        };
+        PiecePoint { at, area, uv }
     }
 
     /// Point, partial derivatives, outward normal, and a bound on the terms that the point was summed from.
@@ -143,4 +148,10 @@ impl Curved {
             }
         }
     }
+}
+
+/// (u, v) of a sphere by its normal, of any length, in its own space: as the sphere's hits report them.
+pub(super) fn sphere_uv(n: DVec3) -> DVec2 {
+    let horizontal = (n.x * n.x + n.z * n.z).sqrt();
+    DVec2::new(0.5 + atan2(n.x, n.z) / TAU, 0.5 + atan2(n.y, horizontal) / PI)
 }

@@ -3,7 +3,7 @@
 //! A flat surface and a mesh emit from the side that their normal leaves. A closed solid emits from both, so that a point
 //! inside a glowing sphere is lit.
 
-use super::pieces::{Curved, Piece, PiecePoint};
+use super::pieces::{Curved, Piece, PiecePoint, sphere_uv};
 use super::{LightEnd, LightSample, SurfacePoint, cosine_hemisphere, frame, to_frame};
 use crate::geometry::mesh::Mesh;
 use crate::math::Affine;
@@ -11,6 +11,7 @@ use crate::math::elementary::sin_cos;
 use crate::math::error::gamma;
 use crate::scene::{Cone, Rgb, Texture};
 use crate::world::emitter::{Emitter, EmitterShape};
+use crate::world::shape::upright;
 use crate::world::texture::{self, TexturePoint};
 use glam::{DMat3, DVec2, DVec3};
 use std::f64::consts::{PI, TAU};
@@ -120,7 +121,7 @@ impl AreaLight {
         let n = (at + wi * distance - center).normalize_or(-wi);
         let error = (center.abs() + DVec3::splat(radius)) * gamma(12);
         let point = SurfacePoint { point: center + n * radius, error, normal: n };
-        let weight = self.emitted(&point, sphere_uv(n), distance) / pdf;
+        let weight = self.emitted(&point, sphere_uv(self.local_from_world.vector(n)), distance) / pdf;
         let end = LightEnd::Surface(point);
         weight.is_finite().then_some((LightSample { wi, weight, pdf: Some(pdf), end }, distance))
     }
@@ -136,11 +137,6 @@ impl AreaLight {
             }
         }
     }
-}
-
-fn sphere_uv(n: DVec3) -> DVec2 {
-    let _ = n;
-    DVec2::ZERO
 }
 
 /// The piece that u.x falls on, the share of the choice it has, and u with the digits that the choice left.
@@ -210,7 +206,7 @@ fn parallelogram(center: DVec3, a: DVec3, b: DVec3, place: &Affine) -> Piece {
 }
 
 fn ellipse(center: DVec3, normal: DVec3, radius: f64, place: &Affine) -> Piece {
-    let (a, b) = frame(normal);
+    let (a, b) = upright(normal);
     let (a, b) = (place.vector(a * radius), place.vector(b * radius));
     Piece::Ellipse { center: place.point(center), a, b, normal: place.normal(normal).normalize_or_zero() }
 }
@@ -229,11 +225,11 @@ fn face(mesh: &Mesh, index: usize, place: &Affine) -> Piece {
 
 fn box_faces(min: DVec3, max: DVec3, place: &Affine) -> Vec<Piece> {
     let (c, h) = (min + (max - min) / 2.0, (max - min) / 2.0);
-    let (x, y, z) = (DVec3::X * h.x, DVec3::Y * h.y, DVec3::Z * h.z);
-    [(x, y, z), (y, z, x), (z, x, y)]
-        .into_iter()
-        .flat_map(|(n, a, b)| [parallelogram(c + n, a, b, place), parallelogram(c - n, b, a, place)])
-        .collect()
+    let face = |n: DVec3| {
+        let (u, v) = upright(n);
+        parallelogram(c + n * h, u * h.dot(u.abs()), v * h.dot(v.abs()), place)
+    };
+    [DVec3::X, DVec3::Y, DVec3::Z].into_iter().flat_map(|n| [face(n), face(-n)]).collect()
 }
 
 fn cone_pieces(cone: &Cone, place: &Affine) -> Vec<Piece> {
