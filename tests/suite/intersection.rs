@@ -5,7 +5,7 @@ use ogee::diag::{SourceId, Span};
 use ogee::geometry::mesh::Mesh;
 use ogee::math::Affine;
 use ogee::scene::assets::DiskLoader;
-use ogee::scene::{Accelerator, Disc, MeshSource, Node, Object, Rect, Shape, Triangle};
+use ogee::scene::{Accelerator, Cone, Disc, MeshSource, Node, Object, Rect, Shape, Torus, Triangle};
 use ogee::world::{Hit, PrimitiveId, Ray, RayKind, World, WorldOptions};
 use std::sync::Arc;
 
@@ -158,11 +158,21 @@ fn jumble(seed: u64) -> Vec<Node> {
 
 fn simple_shape(i: usize, at: DVec3, random: &mut Random) -> Shape {
     let size = 0.1 + 0.5 * random.next();
-    match i % 5 {
+    match i % 7 {
         0 => sphere(at, size),
         1 => Shape::Box(Box::new((at, at + DVec3::splat(size)))),
         2 => Shape::Disc(Box::new(Disc { center: at, normal: random.unit(), radius: size })),
         3 => Shape::Rect(Box::new(Rect { center: at, a: random.unit() * size, b: random.unit() * size })),
+        4 => Shape::Cone(Box::new(Cone {
+            from: at,
+            to: at + random.unit() * size,
+            radii: [size * random.next(), size * (random.next() - 0.3).max(0.0)],
+        })),
+        5 => Shape::Torus(Box::new(Torus {
+            center: at,
+            axis: random.unit(),
+            radii: [size, size * 0.6 * random.next()],
+        })),
         _ => Shape::Triangle(Box::new(Triangle {
             vertices: [at, at + random.unit() * size, at + random.unit() * size],
             normals: None,

@@ -170,6 +170,8 @@ fn emitter_shape(shape: &Shape) -> Option<EmitterShape> {
         Shape::Disc(s) => EmitterShape::Disc(s.0),
         Shape::Rect(s) => EmitterShape::Rect(s.shape),
         Shape::Cuboid(s) => EmitterShape::Box(s.min, s.max),
+        Shape::Cone(s) => EmitterShape::Cone(s.shape),
+        Shape::Torus(s) => EmitterShape::Torus(s.shape),
         Shape::Triangle(s) => EmitterShape::Triangle(s.0),
     })
 }

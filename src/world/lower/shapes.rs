@@ -2,7 +2,7 @@
 
 use crate::scene;
 use crate::world::shape::triangle::normal_of;
-use crate::world::shape::{Cuboid, Disc, Plane, Rect, Shape, Sphere, Triangle};
+use crate::world::shape::{Cone, Cuboid, Disc, Plane, Rect, Shape, Sphere, Torus, Triangle};
 use glam::DVec3;
 
 /// The shape, or what is wrong with it. Groups and meshes are not shapes of this kind.
@@ -37,7 +37,16 @@ pub(super) fn convert(shape: scene::Shape) -> Result<Shape, String> {
             check(good, || "the corners of this triangle lie on a line: it has no area".into())?;
             Ok(Shape::Triangle(Box::new(Triangle(*triangle))))
         }
-        scene::Shape::Cone(_) | scene::Shape::Torus(_) => Err("not built yet".into()),
+        scene::Shape::Cone(cone) => Cone::new(*cone)
+            .map(|cone| Shape::Cone(Box::new(cone)))
+            .ok_or_else(|| "a cylinder or cone needs a length and a radius".into()),
+        scene::Shape::Torus(torus) => {
+            let good = torus.radii.into_iter().all(is_length)
+                && is_direction(torus.axis)
+                && torus.center.is_finite();
+            check(good, || "a torus needs two positive radii".into())?;
+            Ok(Shape::Torus(Box::new(Torus::new(*torus))))
+        }
         scene::Shape::Mesh(_) | scene::Shape::Group(_) => Err("not a simple shape".into()),
     }
 }

@@ -4,19 +4,23 @@
 //! wins is turned into a [`Surface`]. Surfaces carry a bound on the error of their point, large enough that a ray started
 //! beyond it does not meet the same shape at the same place again.
 
+mod cone;
 mod cuboid;
 mod disc;
 pub mod mesh;
 mod plane;
 mod rect;
 mod sphere;
+mod torus;
 pub mod triangle;
 
+pub use cone::Cone;
 pub use cuboid::Cuboid;
 pub use disc::Disc;
 pub use plane::Plane;
 pub use rect::Rect;
 pub use sphere::Sphere;
+pub use torus::Torus;
 pub use triangle::Triangle;
 
 use crate::math::exact::{exponent, power_of_two};
@@ -101,6 +105,8 @@ pub enum Shape {
     Disc(Box<Disc>),
     Rect(Box<Rect>),
     Cuboid(Box<Cuboid>),
+    Cone(Box<Cone>),
+    Torus(Box<Torus>),
     Triangle(Box<Triangle>),
 }
 
@@ -113,6 +119,8 @@ impl Shape {
             Shape::Disc(s) => s.meet(ray, limit),
             Shape::Rect(s) => s.meet(ray, limit),
             Shape::Cuboid(s) => s.meet(ray, limit),
+            Shape::Cone(s) => s.meet(ray, limit),
+            Shape::Torus(s) => s.meet(ray, limit),
             Shape::Triangle(s) => s.meet(ray, limit),
         }
     }
@@ -125,6 +133,8 @@ impl Shape {
             Shape::Disc(s) => s.surface(ray, meet),
             Shape::Rect(s) => s.surface(ray, meet),
             Shape::Cuboid(s) => s.surface(ray, meet),
+            Shape::Cone(s) => s.surface(ray, meet),
+            Shape::Torus(s) => s.surface(ray, meet),
             Shape::Triangle(s) => s.surface(meet),
         }
     }
@@ -137,6 +147,8 @@ impl Shape {
             (Shape::Disc(s), _) => s.bounds(),
             (Shape::Rect(s), _) => s.bounds(),
             (Shape::Cuboid(s), _) => s.bounds(),
+            (Shape::Cone(s), _) => s.bounds(),
+            (Shape::Torus(s), _) => s.bounds(),
             (Shape::Triangle(s), _) => s.bounds(),
         };
         transform.map_or(local, |transform| image_of(local, transform))
