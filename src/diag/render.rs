@@ -203,7 +203,9 @@ mod tests {
             let found = [fault];
             assert!(human(&found, &sources, Style::plain(60)).contains("any.scene") || text.is_empty());
             human(&found, &sources, Style { colour: true, width: 0 });
-            assert!(json(&found, &sources).lines().count() == 2 && short(&found, &sources).lines().count() == 1);
+            assert!(
+                json(&found, &sources).lines().count() == 2 && short(&found, &sources).lines().count() == 1
+            );
         }
     }
 }

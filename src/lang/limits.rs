@@ -53,7 +53,13 @@ impl Limits {
 }
 
 /// The error of a guard, with the flag that raises it.
-pub fn exceeded(code: Code, span: impl Into<Option<Span>>, message: String, name: &str, limit: u64) -> Diagnostic {
+pub fn exceeded(
+    code: Code,
+    span: impl Into<Option<Span>>,
+    message: String,
+    name: &str,
+    limit: u64,
+) -> Diagnostic {
     let raised = limit.saturating_mul(10);
     Diagnostic::new(code, span, message)
         .hint(format!("if this is meant, raise the guard: `--limit {name}={raised}` (it is {limit})"))

@@ -220,25 +220,25 @@ impl Polynomial {
     /// The root between two ends of opposite sign, to the last bit that the coefficients determine.
     fn close_in(&self, mut left: End, mut right: End) -> f64 {
         let mut x = middle(left.x, right.x, 0);
-        // Each turn halves the floats in the bracket every third time at the latest: 64 bits, twice over to be safe.
+        let mut probes = 0;
+        // Every third turn halves a bracket over many magnitudes in the order of floats: 64 of them, twice where it straddles zero.
         for turn in 0..400 {
             let sign = self.sign(x);
             if sign == 0 {
                 return x;
             }
-            let side = if sign == left.sign { &mut left } else { &mut right };
-            let before = side.x;
+            let (side, other) = if sign == left.sign { (&mut left, right.x) } else { (&mut right, left.x) };
             side.x = x;
             if left.x.next_up() >= right.x {
                 break;
             }
             let step = self.newton(x);
-            let inside = left.x < step && step < right.x;
-            let slow = turn % 3 == 2 && (x - before).abs() > (right.x - left.x) / 2.0;
+            let wide = turn % 3 == 2 && !alike(left.x, right.x);
             x = if (step - x).abs() <= 2.0 * UNIT_ROUNDOFF * x.abs() {
-                // Converged on one side: bring the other one up.
-                beside(x, if sign == left.sign { right.x } else { left.x }, turn)
-            } else if inside && !slow {
+                // Converged from one side: bring the other one up.
+                probes += 1;
+                beside(x, other, probes)
+            } else if left.x < step && step < right.x && !wide {
                 step
             } else {
                 middle(left.x, right.x, turn)
@@ -262,12 +262,16 @@ impl End {
     }
 }
 
+/// Of one sign and within a factor of 256.
+fn alike(a: f64, b: f64) -> bool {
+    a * b > 0.0 && a.abs() <= 256.0 * b.abs() && b.abs() <= 256.0 * a.abs()
+}
+
 /// A float strictly between two that are not neighbours: the mean where they are of like size, else halfway in the order of floats;
 /// across zero the one and the other by turns.
 fn middle(a: f64, b: f64, turn: u32) -> f64 {
     let mean = a / 2.0 + b / 2.0;
-    let like = a.abs() <= 256.0 * b.abs() && b.abs() <= 256.0 * a.abs() || (a * b < 0.0 && turn % 2 == 0);
-    if like && a < mean && mean < b {
+    if a < mean && mean < b && (alike(a, b) || (a * b < 0.0 && turn % 2 == 0)) {
         return mean;
     }
     let order = |x: f64| {
@@ -278,12 +282,12 @@ fn middle(a: f64, b: f64, turn: u32) -> f64 {
     back(((i128::from(order(a)) + i128::from(order(b))) / 2) as i64)
 }
 
-/// A few ulp from x toward an end of its bracket, farther with each turn, never at the end.
-fn beside(x: f64, end: f64, turn: u32) -> f64 {
-    let step = x.abs().max(f64::MIN_POSITIVE) * UNIT_ROUNDOFF * 2.0 * f64::from(1u32 << (turn % 24));
+/// A few ulp from x toward an end of its bracket, farther with each probe, never at the end.
+fn beside(x: f64, end: f64, probes: u32) -> f64 {
+    let step = x.abs().max(f64::MIN_POSITIVE) * UNIT_ROUNDOFF * f64::from(1u32 << probes.min(30));
     let near = if end > x { (x + step).max(x.next_up()) } else { (x - step).min(x.next_down()) };
     let inside = if end > x { near < end } else { near > end };
-    if inside { near } else { middle(x.min(end), x.max(end), turn) }
+    if inside { near } else { middle(x.min(end), x.max(end), probes) }
 }
 
 #[cfg(test)]

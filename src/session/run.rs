@@ -59,9 +59,7 @@ pub(super) fn evaluate(
         let set = settings(sources, options, &mut sink);
         match question {
             Some(None) => empty(sink),
-            question => {
-                run(options, loader, &files, &set, question.flatten().as_ref(), sink, stack)
-            }
+            question => run(options, loader, &files, &set, question.flatten().as_ref(), sink, stack),
         }
     })
 }
@@ -94,11 +92,7 @@ fn run(
     let run = Run { program: &program, files, loader, limits, time, stack };
     let ran = eval::run(&run, &mut sink);
     Outcome {
-        evaluated: Evaluated {
-            scene: ran.scene,
-            diagnostics: sink.into_sorted(),
-            printed: ran.printed,
-        },
+        evaluated: Evaluated { scene: ran.scene, diagnostics: sink.into_sorted(), printed: ran.printed },
         attempts: ran.attempts,
         answer: ran.answer.as_ref().map(Answer::of),
     }

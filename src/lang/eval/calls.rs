@@ -196,10 +196,13 @@ impl<'p> Evaluator<'p> {
                     Some(i) => i,
                     None => {
                         let names = function.parameters.iter().map(|p| &*p.name);
-                        let said =
-                            Diagnostic::new(Code::WrongArity, *name_span, format!("no parameter is called `{name}`"))
-                                .did_you_mean(name, names)
-                                .also(function.span, "defined here");
+                        let said = Diagnostic::new(
+                            Code::WrongArity,
+                            *name_span,
+                            format!("no parameter is called `{name}`"),
+                        )
+                        .did_you_mean(name, names)
+                        .also(function.span, "defined here");
                         return Err(self.fail(said));
                     }
                 },
@@ -252,11 +255,8 @@ impl<'p> Evaluator<'p> {
         values: Vec<Value>,
         span: Span,
     ) -> Outcome {
-        let mut bound: Vec<Option<(Value, Span)>> = builtin
-            .parameters
-            .iter()
-            .map(|p| Some((builtins::default_value(p.default?)?, span)))
-            .collect();
+        let mut bound: Vec<Option<(Value, Span)>> =
+            builtin.parameters.iter().map(|p| Some((builtins::default_value(p.default?)?, span))).collect();
         for (position, (argument, value)) in arguments.iter().zip(values).enumerate() {
             let named = |name: &str| builtin.parameters.iter().position(|p| p.name == name);
             let i = argument.name.as_ref().map_or(Some(position), |(name, _)| named(name));
@@ -279,10 +279,11 @@ impl<'p> Evaluator<'p> {
     fn wrong_builtin_count(&mut self, builtin: &Builtin, span: Span) -> Reported {
         let names: Vec<&str> = builtin.parameters.iter().map(|p| p.name).collect();
         let message = format!("`{}` takes other arguments than these", builtin.name);
-        self.fail(
-            Diagnostic::new(Code::WrongArity, span, message)
-                .hint(format!("it is called `{}({})`", builtin.name, names.join(", "))),
-        )
+        self.fail(Diagnostic::new(Code::WrongArity, span, message).hint(format!(
+            "it is called `{}({})`",
+            builtin.name,
+            names.join(", ")
+        )))
     }
 
     /// A call from a builtin (`map`, `fold`): surplus arguments are an error as in any call.

@@ -43,7 +43,9 @@ impl<'p> Evaluator<'p> {
             ExprKind::And(parts) => {
                 Ok(Value::Bool(self.truth(&parts.0, "&&")? && self.truth(&parts.1, "&&")?))
             }
-            ExprKind::Or(parts) => Ok(Value::Bool(self.truth(&parts.0, "||")? || self.truth(&parts.1, "||")?)),
+            ExprKind::Or(parts) => {
+                Ok(Value::Bool(self.truth(&parts.0, "||")? || self.truth(&parts.1, "||")?))
+            }
             ExprKind::List(elements) => self.list(elements, e.span),
             ExprKind::Comprehension(c) => self.comprehension(c, e.span),
             ExprKind::Text(parts) => self.text(parts, e.span),

@@ -44,10 +44,14 @@ impl<'p> Evaluator<'p> {
                 let letters: Vec<String> = LETTERS[0][..count].chars().map(|c| format!("`.{c}`")).collect();
                 said.hint(format!("it has {}, and combinations such as `.xy`", letters.join(", ")))
             }
-            Value::List(_) if matches!(name, "length" | "len" | "size" | "count") => said.hint("write `len(list)`"),
+            Value::List(_) if matches!(name, "length" | "len" | "size" | "count") => {
+                said.hint("write `len(list)`")
+            }
             Value::List(_) => said.hint("elements are written `list[0]`"),
             Value::Number(_) => said.hint("only vectors have components"),
-            Value::Fragment(_) => said.hint("a body without `return` gives properties; `return` a value to use it"),
+            Value::Fragment(_) => {
+                said.hint("a body without `return` gives properties; `return` a value to use it")
+            }
             _ => said,
         })
     }
@@ -87,7 +91,9 @@ impl<'p> Evaluator<'p> {
                 format!("an index is a whole number, and this is {shown}"),
             )
             .hint("round it: `list[floor(i)]`"),
-            (true, 0) => Diagnostic::new(Code::IndexOutOfRange, span, format!("index {shown} of an empty list")),
+            (true, 0) => {
+                Diagnostic::new(Code::IndexOutOfRange, span, format!("index {shown} of an empty list"))
+            }
             (true, _) => Diagnostic::new(
                 Code::IndexOutOfRange,
                 span,

@@ -154,11 +154,9 @@ impl<'p> Evaluator<'p> {
             }
         }
         match outcome {
-            Ok(()) => out.given.push(Given {
-                name: property.name.clone(),
-                name_span: property.name_span,
-                values,
-            }),
+            Ok(()) => {
+                out.given.push(Given { name: property.name.clone(), name_span: property.name_span, values })
+            }
             Err(Reported) => out.poisoned.push((property.name.clone(), property.name_span)),
         }
         outcome
@@ -341,8 +339,12 @@ impl<'p> Evaluator<'p> {
             (Value::Material(_), _) => "give it to an object: `material name` inside the object's braces",
             (Value::Pattern(_), _) => "give it to a material: `diffuse name`",
             (Value::Transform(_), _) => "give it to an object: `matrix name`",
-            (Value::Bool(_), ExprKind::Compare(..)) => "to check a condition, write `assert(condition, \"message\")`",
-            (Value::Camera(_) | Value::Render(_), _) => "it stands at the top level of a file, not inside braces",
+            (Value::Bool(_), ExprKind::Compare(..)) => {
+                "to check a condition, write `assert(condition, \"message\")`"
+            }
+            (Value::Camera(_) | Value::Render(_), _) => {
+                "it stands at the top level of a file, not inside braces"
+            }
             _ => "an item that is an expression places its value; to keep a value, write `let name = …`",
         };
         self.fail(said.hint(hint))

@@ -27,7 +27,11 @@ pub fn number(op: Arithmetic, a: f64, b: f64) -> f64 {
 
 /// aᵇ: by repeated products where b is a small whole number.
 pub fn power(a: f64, b: f64) -> f64 {
-    if b == b.trunc() && b.abs() <= WHOLE_POWER { elementary::powi(a, b as i32) } else { elementary::powf(a, b) }
+    if b == b.trunc() && b.abs() <= WHOLE_POWER {
+        elementary::powi(a, b as i32)
+    } else {
+        elementary::powf(a, b)
+    }
 }
 
 /// `a op b` on numbers and vectors: component by component, a number beside a vector stands for every component.
@@ -139,15 +143,16 @@ fn mismatch(op: Arithmetic, a: &Value, b: &Value, span: Span) -> Diagnostic {
         (Arithmetic::Add, Value::Text(_), _) | (Arithmetic::Add, _, Value::Text(_)) => {
             said.hint("texts are joined by interpolation: `\"{a}{b}\"`")
         }
-        (Arithmetic::Add, Value::List(_), Value::List(_)) => {
-            said.hint("lists are not added; write the elements in one: `[for …]` over both, or `map` and `zip`")
-        }
+        (Arithmetic::Add, Value::List(_), Value::List(_)) => said
+            .hint("lists are not added; write the elements in one: `[for …]` over both, or `map` and `zip`"),
         (_, Value::List(_), _) | (_, _, Value::List(_)) => {
             said.hint("apply it to each element: `[e * 2 for e in list]`")
         }
-        (_, Value::Vector2(_) | Value::Vector3(_) | Value::Vector4(_), Value::Vector2(_) | Value::Vector3(_) | Value::Vector4(_)) => {
-            said.hint("both vectors must have as many components; `v.xy` takes two of them")
-        }
+        (
+            _,
+            Value::Vector2(_) | Value::Vector3(_) | Value::Vector4(_),
+            Value::Vector2(_) | Value::Vector3(_) | Value::Vector4(_),
+        ) => said.hint("both vectors must have as many components; `v.xy` takes two of them"),
         (_, Value::Function(_), _) | (_, _, Value::Function(_)) => said.hint("call the function: `f(x)`"),
         (Arithmetic::Multiply, Value::Transform(_), _) | (Arithmetic::Multiply, _, Value::Transform(_)) => {
             said.hint("a transform is applied by `matrix`, inside an object's braces")
@@ -177,10 +182,15 @@ pub fn order(op: Comparison, a: &Value, b: &Value, span: Span) -> Result<bool, D
         (Value::Number(x), Value::Number(y)) => x.partial_cmp(y),
         (Value::Text(s), Value::Text(t)) => Some(s.cmp(t)),
         _ => {
-            let message = format!("`{}` orders numbers, and these are {} and {}", op.text(), shown(a), shown(b));
+            let message =
+                format!("`{}` orders numbers, and these are {} and {}", op.text(), shown(a), shown(b));
             let said = Diagnostic::new(Code::TypeMismatch, span, message);
             let vectors = matches!((a, b), (Value::Vector2(_) | Value::Vector3(_) | Value::Vector4(_), _));
-            return Err(if vectors { said.hint("compare a component, `v.x`, or the `length(v)`") } else { said });
+            return Err(if vectors {
+                said.hint("compare a component, `v.x`, or the `length(v)`")
+            } else {
+                said
+            });
         }
     };
     Ok(ordering.is_some_and(|o| match op {

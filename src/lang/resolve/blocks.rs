@@ -92,7 +92,9 @@ impl<'a> Resolver<'a> {
                 None
             }
             (Some(_), _) => Some(Fate::Named),
-            (None, Place::Block(around)) if property_of(around) => Some(Fate::Given(self.word(&block.kind.name))),
+            (None, Place::Block(around)) if property_of(around) => {
+                Some(Fate::Given(self.word(&block.kind.name)))
+            }
             (None, Place::Loose) => Some(Fate::Given(self.word(&block.kind.name))),
             (None, Place::Block(around)) => {
                 self.report(crate::lang::check::unknown_property(around, kind.name, block.kind.span));
@@ -102,7 +104,10 @@ impl<'a> Resolver<'a> {
                 self.refuse(
                     block,
                     format!("a `{}` without a name does nothing here", kind.name),
-                    &format!("name it, `{0} my_{0} {{ … }}`, or put it inside the object that it is for", kind.name),
+                    &format!(
+                        "name it, `{0} my_{0} {{ … }}`, or put it inside the object that it is for",
+                        kind.name
+                    ),
                 );
                 None
             }

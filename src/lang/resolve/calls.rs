@@ -1,6 +1,8 @@
 //! Calls: arguments are matched to parameters here wherever the function is known.
 
-use super::program::{Argument, CallBuiltin, CallFunction, CallMethod, CallValue, Expr, ExprKind, FunctionId};
+use super::program::{
+    Argument, CallBuiltin, CallFunction, CallMethod, CallValue, Expr, ExprKind, FunctionId,
+};
 use super::scope::Declared;
 use super::{Access, Meaning, Resolver};
 use crate::diag::{Code, Diagnostic, Span};
@@ -165,8 +167,8 @@ impl<'a> Resolver<'a> {
     fn report_unknown_argument(&mut self, callee: &Callee<'_>, name: &ast::Ident) {
         let names: Vec<&str> = callee.parameters.iter().map(|(n, _)| *n).collect();
         let message = format!("`{}` has no parameter `{}`", callee.name, name.name);
-        let mut said =
-            Diagnostic::new(Code::WrongArity, name.span, message).did_you_mean(&name.name, names.iter().copied());
+        let mut said = Diagnostic::new(Code::WrongArity, name.span, message)
+            .did_you_mean(&name.name, names.iter().copied());
         if said.hints.is_empty() {
             said = said.hint(format!("it is called `{}`", form(callee)));
         }
@@ -176,12 +178,7 @@ impl<'a> Resolver<'a> {
         self.report(said);
     }
 
-    fn check_count(
-        &mut self,
-        callee: &Callee<'_>,
-        call: &ast::Call,
-        matched: &[(u32, Expr)],
-    ) -> bool {
+    fn check_count(&mut self, callee: &Callee<'_>, call: &ast::Call, matched: &[(u32, Expr)]) -> bool {
         let n = callee.parameters.len();
         let surplus = matched.iter().find(|(i, _)| *i as usize >= n).filter(|_| !callee.variadic);
         let is_given = |i: usize| matched.iter().any(|(filled, _)| *filled as usize == i);
@@ -226,10 +223,11 @@ fn count(n: usize, what: &str) -> String {
 /// `f(a, b = …, c…)`.
 fn form(callee: &Callee<'_>) -> String {
     let last = callee.parameters.len().wrapping_sub(1);
-    let parameters = callee.parameters.iter().enumerate().map(|(i, (name, default))| match (default, i == last) {
-        (_, true) if callee.variadic => format!("{name}…"),
-        (true, _) => format!("{name} = …"),
-        (false, _) => (*name).to_owned(),
-    });
+    let parameters =
+        callee.parameters.iter().enumerate().map(|(i, (name, default))| match (default, i == last) {
+            (_, true) if callee.variadic => format!("{name}…"),
+            (true, _) => format!("{name} = …"),
+            (false, _) => (*name).to_owned(),
+        });
     format!("{}({})", callee.name, parameters.collect::<Vec<_>>().join(", "))
 }

@@ -59,18 +59,20 @@ impl<'a> Resolver<'a> {
     /// A name's value. `words` are those that would also have fitted, for the hint.
     pub(super) fn name(&mut self, name: &'a str, span: Span, words: &[&str]) -> Expr {
         let kind = match self.meaning(name) {
-            Some(Meaning::Variable(access, variable)) => match variable.declared {
-                Declared::Value | Declared::Var | Declared::Function(_) => ExprKind::Name(access),
-                Declared::Poison => ExprKind::Poison,
-                Declared::Module(_) => {
-                    self.report(
+            Some(Meaning::Variable(access, variable)) => {
+                match variable.declared {
+                    Declared::Value | Declared::Var | Declared::Function(_) => ExprKind::Name(access),
+                    Declared::Poison => ExprKind::Poison,
+                    Declared::Module(_) => {
+                        self.report(
                         Diagnostic::new(Code::TypeMismatch, span, format!("`{name}` is an imported file, not a value"))
                             .also(variable.span, "imported here")
                             .hint(format!("write `{name}.scene` for all that it places, or `{name}.…` for one of its names")),
                     );
-                    ExprKind::Poison
+                        ExprKind::Poison
+                    }
                 }
-            },
+            }
             Some(Meaning::Constant(Value::Number(x))) => ExprKind::Number(x),
             Some(Meaning::Constant(value)) => constant(value),
             Some(Meaning::Builtin(builtin)) => constant(Value::Builtin(builtin)),

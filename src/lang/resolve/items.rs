@@ -75,7 +75,11 @@ impl<'a> Resolver<'a> {
         let id = FunctionId(self.program.functions.len() as u32);
         let name = name.map(|n| self.word(&n.name));
         let parameters = parameters.iter().map(|p| (self.word(&p.name.name), p.default.is_some())).collect();
-        self.signatures.push(Signature { name: name.clone().unwrap_or_else(|| "=>".into()), span, parameters });
+        self.signatures.push(Signature {
+            name: name.clone().unwrap_or_else(|| "=>".into()),
+            span,
+            parameters,
+        });
         let body = FunctionBody::Items(Body::default());
         self.program.functions.push(Function { name, parameters: Vec::new(), n_slots: 0, body, span });
         id
@@ -251,8 +255,10 @@ impl<'a> Resolver<'a> {
             said.hint(format!("a property is written without `=`: `{} …`", name.name))
         } else {
             let names = self.scopes.names();
-            said.did_you_mean(&name.name, names)
-                .hint(format!("a new name is made by `let {0} = …`, or `var {0} = …` if it changes", name.name))
+            said.did_you_mean(&name.name, names).hint(format!(
+                "a new name is made by `let {0} = …`, or `var {0} = …` if it changes",
+                name.name
+            ))
         };
         self.report(said);
     }

@@ -163,7 +163,8 @@ impl<'a> Reading<'a> {
         let bytes = match self.loader.read(path) {
             Ok(bytes) => bytes,
             Err(error) => {
-                let said = Diagnostic::new(Code::FileNotFound, at, format!("`{shown}` cannot be read: {error}"));
+                let said =
+                    Diagnostic::new(Code::FileNotFound, at, format!("`{shown}` cannot be read: {error}"));
                 self.report(match at {
                     Some(_) => said.hint("a path is relative to the file that writes it"),
                     None => said,
@@ -182,7 +183,8 @@ impl<'a> Reading<'a> {
             Err(error) => {
                 let place = error.utf8_error().valid_up_to();
                 let line = 1 + error.as_bytes()[..place].iter().filter(|b| **b == b'\n').count();
-                let message = format!("`{shown}` is not UTF-8 text: byte {place}, in line {line}, begins no character");
+                let message =
+                    format!("`{shown}` is not UTF-8 text: byte {place}, in line {line}, begins no character");
                 self.report(
                     Diagnostic::new(Code::NotUtf8, at, message).hint("save the file as UTF-8 in your editor"),
                 );

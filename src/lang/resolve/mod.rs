@@ -12,9 +12,9 @@ pub mod program;
 mod scope;
 mod words;
 
+use super::builtins;
 use super::limits::Limits;
 use super::value::Value;
-use super::builtins;
 use crate::diag::{Code, Diagnostic, Sink, Span};
 use crate::syntax::ast;
 use load::{FileId, Files};
@@ -210,8 +210,12 @@ impl<'a> Resolver<'a> {
         let (access, before) = self.scopes.declare(&name.name, &word, name.span, declared);
         if let Some(before) = before {
             let hint = match declared {
-                Declared::Var | Declared::Value => "give one of them another name; a `var` is set again without `var`: `name = …`",
-                Declared::Function(_) | Declared::Module(_) | Declared::Poison => "give one of them another name",
+                Declared::Var | Declared::Value => {
+                    "give one of them another name; a `var` is set again without `var`: `name = …`"
+                }
+                Declared::Function(_) | Declared::Module(_) | Declared::Poison => {
+                    "give one of them another name"
+                }
             };
             self.report(
                 Diagnostic::new(

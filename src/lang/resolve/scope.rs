@@ -171,7 +171,13 @@ impl<'a> Scopes<'a> {
 
     /// Declares a name in the innermost scope. An error is the place where the scope already has it; the name then means
     /// the new variable.
-    pub fn declare(&mut self, name: &'a str, word: &Word, span: Span, declared: Declared) -> (Access, Option<Span>) {
+    pub fn declare(
+        &mut self,
+        name: &'a str,
+        word: &Word,
+        span: Span,
+        declared: Declared,
+    ) -> (Access, Option<Span>) {
         let id = VariableId(self.variables.len() as u32);
         let n_globals = self.globals.len() as u32;
         let context = self.contexts.last_mut().expect("names are declared inside a unit");
@@ -258,7 +264,11 @@ impl<'a> Scopes<'a> {
     /// Where a name that is not yet declared will be, in the blocks around: for "used before it is defined".
     pub fn declared_later(&self, name: &str) -> Option<Span> {
         let scopes = self.contexts.iter().rev().flat_map(|c| c.scopes.iter().rev());
-        scopes.flat_map(|s| s.items.iter()).filter_map(|item| declares(item)).find(|n| &*n.name == name).map(|n| n.span)
+        scopes
+            .flat_map(|s| s.items.iter())
+            .filter_map(|item| declares(item))
+            .find(|n| &*n.name == name)
+            .map(|n| n.span)
     }
 
     /// Every name that means something here.

@@ -3,6 +3,7 @@
 use super::Lowering;
 use crate::diag::{Code, Diagnostic, Span};
 use crate::geometry::mesh::Mesh;
+use crate::scene::assets::obj::load_obj;
 use crate::scene::{Material, MeshSource};
 use crate::world::aggregate::{Aggregate, MeshAggregate};
 use crate::world::shape::EVERYTHING;
@@ -54,9 +55,16 @@ impl Lowering<'_> {
     }
 
     fn read_mesh(&mut self, key: &(PathBuf, Option<bool>), span: Span) -> (Option<Mesh>, Vec<Arc<Material>>) {
-        let _ = (key, self.assets);
-        self.sink.push(Diagnostic::new(Code::NotBuilt, span, "mesh files are not built yet"));
-        (None, Vec::new())
+        match load_obj(self.assets, &key.0, key.1, span) {
+            Ok(loaded) => {
+                self.sink.extend(loaded.warnings);
+                (Some(loaded.mesh), loaded.materials)
+            }
+            Err(fault) => {
+                self.sink.push(*fault);
+                (None, Vec::new())
+            }
+        }
     }
 
     fn keep_mesh(&mut self, mesh: Mesh, materials: Vec<Arc<Material>>, span: Span) -> Option<u32> {
