@@ -10,10 +10,13 @@ use super::Hit;
 use crate::diag::Span;
 use crate::math::Affine;
 use crate::math::colour::luminance;
+use crate::math::elementary::sin;
 use crate::math::field::FaultKind;
+use crate::math::noise::{fbm, gradient_noise, noise};
 use crate::scene::assets::image::Reading;
 use crate::scene::{ImagePattern, Pattern, PatternKind, Rgb, SampleInput, SampledFunction, Texture};
 use glam::{DVec2, DVec3};
+use std::f64::consts::TAU;
 
 /// What a texture may ask of a point of a surface.
 #[derive(Clone, Copy, Debug, Default)]
@@ -120,8 +123,9 @@ fn rule(pattern: &Pattern, at: &TexturePoint, reading: Reading) -> Sampled<Rgb> 
         PatternKind::Gradient(a, b) => mix(a, b, p.y, at, reading),
         PatternKind::Ramp(input, stops) => ramp(number(input, at)?, stops, at, reading),
         PatternKind::Image(image) => from_picture(image, at.uv, reading),
-        PatternKind::Noise(a, b) => mix(a, b, crate::math::noise::noise(&p.to_array()), at, reading),
-        PatternKind::Marble(a, b) | PatternKind::Wood(a, b) => mix(a, b, 0.5, at, reading),
+        PatternKind::Noise(a, b) => mix(a, b, noise(&p.to_array()), at, reading),
+        PatternKind::Marble(a, b) => mix(a, b, veins(p), at, reading),
+        PatternKind::Wood(a, b) => mix(a, b, rings(p), at, reading),
         PatternKind::Function(function) => call(function, at),
     }
 }
@@ -136,6 +140,17 @@ fn is_even_cell(p: DVec3) -> bool {
 fn slab(x: f64, n: usize) -> Option<usize> {
     let index = (x + 0.5).floor().rem_euclid(n as f64);
     (n > 0).then(|| (index as usize).min(n - 1))
+}
+
+/// Marble: waves one unit apart along x, displaced by four octaves of noise; 0 … 1.
+fn veins(p: DVec3) -> f64 {
+    0.5 + 0.5 * sin(TAU * (p.x + fbm(&p.to_array(), 4, 2.0, 0.5)))
+}
+
+/// Wood: rings one unit apart about the y axis, each rising from 0 to 1, a tenth of a unit out of round.
+fn rings(p: DVec3) -> f64 {
+    let radius = DVec2::new(p.x, p.z).length() + 0.1 * gradient_noise(&p.to_array(), 0);
+    radius - radius.floor()
 }
 
 /// (1 − t)·a + t·b, t clamped to 0 … 1.

@@ -445,7 +445,11 @@ fn a_rough_mirror_blurs_and_keeps_its_light() {
 fn grooves(depth: f64, across: f64) -> Texture {
     let slabs = PatternKind::Gradient(Texture::number(0.0), Texture::number(depth));
     let along_y = ogee::math::Affine::scale(DVec3::new(1.0, across, 1.0));
-    Texture::Pattern(std::sync::Arc::new(Pattern { kind: slabs, transform: Some(Box::new(along_y)), span: SPAN }))
+    Texture::Pattern(std::sync::Arc::new(Pattern {
+        kind: slabs,
+        transform: Some(Box::new(along_y)),
+        span: SPAN,
+    }))
 }
 
 #[test]
@@ -465,14 +469,14 @@ fn a_bump_tilts_the_normal_by_the_slope_of_its_height() {
 fn textured_lights_shine_as_they_look() {
     let halves = Pattern {
         kind: PatternKind::Checker(Texture::number(2.0), Texture::number(0.0)),
-        transform: Some(Box::new(ogee::math::Affine::scale(100.0 * DVec3::ONE).then(&ogee::math::Affine::translate(50.0 * X)))),
+        transform: Some(Box::new(
+            ogee::math::Affine::scale(100.0 * DVec3::ONE).then(&ogee::math::Affine::translate(50.0 * X)),
+        )),
         span: SPAN,
     };
     let material = layered(0.0, |l| l.emit = Texture::Pattern(std::sync::Arc::new(halves)));
-    let world = world(vec![
-        object(plane(Y, 0.0), &diffuse(1.0)),
-        object(rect(Y, 0.5 * X, 0.5 * Z), &material),
-    ]);
+    let world =
+        world(vec![object(plane(Y, 0.0), &diffuse(1.0)), object(rect(Y, 0.5 * X, 0.5 * Z), &material)]);
     // Half of the unit square over the middle, at twice the radiance.
     let mut many = settings([1, 1]);
     many.samples = 1024;

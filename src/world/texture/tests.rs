@@ -57,6 +57,27 @@ fn stripes_go_round_also_below_zero() {
 }
 
 #[test]
+fn noise_is_that_of_the_language_and_all_mixtures_stay_between() {
+    type Make = fn(Texture, Texture) -> PatternKind;
+    let makes: [Make; 3] = [PatternKind::Noise, PatternKind::Marble, PatternKind::Wood];
+    for make in makes {
+        let (a, b) = black_and_white();
+        let texture = pattern(make(a, b));
+        let mut seen = (1.0f64, 0.0f64);
+        for i in 0..500 {
+            let p = DVec3::new(0.37, 0.21, -0.73) * f64::from(i);
+            let value = number(&texture, &at(p)).unwrap();
+            seen = (seen.0.min(value), seen.1.max(value));
+            assert!((0.0..=1.0).contains(&value));
+        }
+        assert!(seen.0 < 0.3 && seen.1 > 0.7, "{seen:?}");
+    }
+    let (a, b) = black_and_white();
+    let p = DVec3::new(0.3, 1.2, -4.5);
+    assert_eq!(number(&pattern(PatternKind::Noise(a, b)), &at(p)), Ok(noise(&p.to_array())));
+}
+
+#[test]
 fn ramps_are_linear_between_stops_and_constant_beyond() {
     let (a, b) = black_and_white();
     let input = pattern(PatternKind::Gradient(a, b));

@@ -259,14 +259,14 @@ impl<'t> Pass<'t> {
     fn corner(&mut self, at: &mut usize, end: usize) -> Result<[bool; 3], Fault> {
         let (bytes, start) = (self.text.as_bytes(), *at);
         let mut given = [false; 3];
-        for list in 0..3 {
+        for (list, is_given) in given.iter_mut().enumerate() {
             let number = *at;
             while *at < end && matches!(bytes[*at], b'0'..=b'9' | b'-' | b'+') {
                 *at += 1;
             }
             if *at > number {
                 self.index(list, number, *at)?;
-                given[list] = true;
+                *is_given = true;
             }
             match bytes.get(*at) {
                 Some(b'/') if *at < end && list < 2 => *at += 1,
