@@ -10,7 +10,8 @@ use crate::syntax::ast::{
     While, With,
 };
 
-/// Where pest gave up, in bytes of the text it was given, and whether that was for want of stack.
+/// Where pest gave up, in bytes of the text it was given, and whether that was for want of stack. The place is that of
+/// the character where its error detail is switched on, else that of the rule.
 pub(super) struct Failure {
     pub at: usize,
     pub too_deep: bool,
@@ -18,9 +19,10 @@ pub(super) struct Failure {
 
 impl Failure {
     pub fn of(error: pest::error::Error<Rule>) -> Self {
-        let at = match error.location {
+        let rule = match error.location {
             pest::error::InputLocation::Pos(at) | pest::error::InputLocation::Span((at, _)) => at,
         };
+        let at = error.parse_attempts().map_or(rule, |attempts| attempts.max_position);
         let too_deep = matches!(error.variant, pest::error::ErrorVariant::CustomError { .. });
         Self { at, too_deep }
     }
@@ -78,6 +80,11 @@ impl<'a> Builder<'a> {
     /// Where bytes of the parsed text stand.
     pub fn span_of(&self, start: usize, end: usize) -> Span {
         self.origin.span(self.base + start, self.base + end)
+    }
+
+    /// The offset, in the whole text, of a byte of the parsed text.
+    pub fn offset(&self, at: usize) -> usize {
+        self.base + at
     }
 
     pub fn report(&mut self, diagnostic: Diagnostic) {
@@ -177,7 +184,10 @@ impl<'a> Builder<'a> {
         let name = self.ident(word);
         let mut values = Vec::with_capacity(tokens.len());
         for value in tokens {
-            values.push(self.expression(value));
+            values.push(match value.as_rule() {
+                Rule::expression => self.expression(value),
+                _ => self.primary(value),
+            });
         }
         if let [Expr { kind: ExprKind::Block(block), .. }] = values.as_slice()
             && is_kind(&name.name)
@@ -203,8 +213,12 @@ impl<'a> Builder<'a> {
         };
         let body = tokens.next().expect("a block has a body");
         let body_end = body.as_span().end();
+        let n_found = self.found.len();
         let (items, braces) = self.body(body);
         if !is_kind(&kind.name) {
+            if near_kind(&kind.name).is_none() {
+                self.found.truncate(n_found);
+            }
             self.report(unknown_kind(&kind, label.as_ref()));
             return ItemKind::Bad { defines: label };
         }
@@ -233,13 +247,17 @@ impl<'a> Builder<'a> {
     }
 
     fn placement(&mut self, token: Token<'a>) -> ItemKind {
+        let at = token.as_span().start();
         let value = self.only_expression(token);
         if let Some(what) = never_placed(&value.kind) {
             let said = format!("{what} stands where an item is expected");
-            self.report(
-                Diagnostic::new(Code::Syntax, value.span, said)
-                    .hint("begin the item with the name of the property that this is the value of"),
-            );
+            let line = self.text[..at].rsplit('\n').next().unwrap_or_default().trim_end();
+            let hint = if self.text[at..].starts_with('(') && line.ends_with(|c: char| c.is_alphanumeric()) {
+                "a call is written tight, `f(x)`; another value of a property follows a `,`"
+            } else {
+                "begin the item with a property's name; another value of the property before follows a `,`"
+            };
+            self.report(Diagnostic::new(Code::Syntax, value.span, said).hint(hint));
             return ItemKind::Bad { defines: None };
         }
         ItemKind::Placement(value)
@@ -359,6 +377,7 @@ pub(super) fn is_reserved(word: &str) -> bool {
 
 /// E0003 at a place.
 pub(super) fn too_deep(span: Span, limit: usize) -> Diagnostic {
+    let span = Span { end: span.end.min(span.start + 1), ..span };
     Diagnostic::new(Code::TooDeep, span, format!("this is nested more than {limit} levels deep"))
         .label("brackets and operators nest past the limit here")
         .hint("name parts of it with `let`, or raise the limit with `--limit depth=N`")
@@ -378,11 +397,34 @@ fn unknown_kind(kind: &Ident, label: Option<&Ident>) -> Diagnostic {
     let found =
         Diagnostic::new(Code::UnknownKind, kind.span, format!("no block is of the kind `{}`", kind.name))
             .label("a word before `{` must be a kind");
-    match crate::diag::nearest(&kind.name, KINDS.iter().copied()) {
+    match near_kind(&kind.name).or_else(|| foreign_kind(&kind.name)) {
         Some(near) => found.hint(format!("did you mean `{near}`?")),
         None if label.is_some() => found,
         None => found.hint(format!("to change a copy of a value, write `{} with {{ … }}`", kind.name)),
     }
+}
+
+/// The kind that a word is likely meant to be.
+pub(super) fn near_kind(word: &str) -> Option<&'static str> {
+    crate::diag::nearest(word, KINDS.iter().copied())
+}
+
+/// The kind that does what a block of POV-Ray's does.
+fn foreign_kind(word: &str) -> Option<&'static str> {
+    Some(match word {
+        "light_source" | "sky_sphere" => "light",
+        "texture" | "pigment" | "finish" | "interior" => "material",
+        "mesh2" => "mesh",
+        "bicubic_patch" => "patch",
+        "isosurface" => "implicit",
+        "sphere_sweep" => "tube",
+        "prism" => "extrude",
+        "sor" => "lathe",
+        "merge" => "union",
+        "object" => "group",
+        "global_settings" | "background" => "render",
+        _ => return None,
+    })
 }
 
 /// What is plainly no object, in words.

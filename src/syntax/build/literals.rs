@@ -1,6 +1,9 @@
 //! Numbers, vectors of numbers, colours and texts, decoded from their characters.
 
+use pest::Parser;
+
 use super::items::{Builder, Token};
+use super::{Grammar, Rule};
 use crate::diag::{Code, Diagnostic, Span};
 use crate::syntax::ast::{ExprKind, TextPart};
 
@@ -12,32 +15,86 @@ impl<'a> Builder<'a> {
         }
     }
 
-    /// `<1, 2.5, -3>`, read as one token. The grammar has seen to its form.
+    /// `<1, 2.5, -3>`, read as one token; as a vector of expressions where it is not just numbers.
     pub fn vector_literal(&mut self, token: &Token<'a>, span: Span) -> ExprKind {
         let text = token.as_str();
         let mut v = [0.0; 4];
         let mut len = 0;
-        for (component, digits) in v.iter_mut().zip(text[1..text.len() - 1].split(',')) {
-            match self.decode(digits.trim_ascii(), span) {
-                Some(value) => *component = value,
-                None => return ExprKind::Bad,
-            }
+        for part in text[1..text.len() - 1].split(',') {
+            let part = part.trim_ascii();
+            let plain = !part.starts_with('+') && part.bytes().any(|b| b.is_ascii_digit()) && !part.ends_with('.');
+            let value = if plain { part.parse::<f64>().ok().filter(|v| v.is_finite()) } else { None };
+            let (Some(value), Some(component)) = (value, v.get_mut(len)) else {
+                return self.vector_again(token, span);
+            };
+            *component = value;
             len += 1;
         }
-        ExprKind::VectorLiteral { len, v: Box::new(v) }
+        if len < 2 {
+            return self.vector_again(token, span);
+        }
+        ExprKind::VectorLiteral { len: len as u8, v: Box::new(v) }
     }
 
-    /// The number nearest to the digits; nothing, with a diagnostic, where it is past the largest.
-    fn decode(&mut self, digits: &str, span: Span) -> Option<f64> {
-        let value = digits.parse::<f64>().ok().filter(|v| v.is_finite());
-        if value.is_none() {
-            let said = format!("`{}` is too large for a number", shorten(digits));
-            self.report(
-                Diagnostic::new(Code::BadNumber, span, said)
-                    .hint("the largest is about 1.8e308; infinity is `inf`"),
-            );
+    /// A vector that looked like numbers alone: `<1 + 2, e>`, or a faulty one.
+    fn vector_again(&mut self, token: &Token<'a>, span: Span) -> ExprKind {
+        let at = token.as_span();
+        let parsed = Grammar::parse(Rule::whole_vector, &self.text[at.start()..at.end()]);
+        let Some(vector) = parsed.ok().and_then(|mut pairs| pairs.next()?.into_inner().next()) else {
+            let found = self.faulty_vector(token.as_str(), at.start(), span);
+            self.report(found);
+            return ExprKind::Bad;
+        };
+        let mut inner = Builder::new(&self.text[at.start()..at.end()], self.offset(at.start()), self.origin);
+        inner.depth = self.depth;
+        let value = inner.primary(vector);
+        self.found.extend(inner.found);
+        value.kind
+    }
+
+    /// What is wrong with the characters of a vector of numbers that begins at `start`.
+    fn faulty_vector(&self, text: &str, start: usize, span: Span) -> Diagnostic {
+        let mut from = start + 1;
+        for part in text[1..text.len() - 1].split(',') {
+            let number = part.trim_ascii();
+            let at = from + (part.len() - part.trim_ascii_start().len());
+            let end = from + part.len();
+            if number.is_empty() {
+                let (after, found) = (&self.text[from - 1..from], &self.text[end..=end]);
+                let said = format!("expected a component after `{after}`, found `{found}`");
+                return Diagnostic::new(Code::Syntax, self.span_of(end, end + 1), said);
+            }
+            if let Some(gap) = number.find(|c: char| c.is_ascii_whitespace()) {
+                let next_at = at + gap + (number[gap..].len() - number[gap..].trim_ascii_start().len());
+                let next = number[next_at - at..].split(|c: char| c.is_ascii_whitespace()).next().unwrap_or_default();
+                let said = format!("expected `,` or `>` before `{next}`");
+                return Diagnostic::new(Code::Syntax, self.span_of(next_at, next_at + next.len()), said)
+                    .hint("the components of a vector have a comma between each two");
+            }
+            if number.parse::<f64>().is_err() || number.ends_with('.') {
+                return malformed(number, self.span_of(at, at + number.len()));
+            }
+            from = end + 1;
         }
-        value
+        Diagnostic::new(Code::Syntax, span, "this vector cannot be read")
+            .hint("a vector is `<a, b>`, `<a, b, c>` or `<a, b, c, d>`: values with a comma between each two")
+    }
+
+    /// The number nearest to the digits; nothing, with a diagnostic, where they make none.
+    fn decode(&mut self, digits: &str, span: Span) -> Option<f64> {
+        let value = digits.parse::<f64>().ok();
+        match value {
+            Some(value) if value.is_finite() => return Some(value),
+            Some(_) => {
+                let said = format!("`{}` is too large for a number", shorten(digits));
+                self.report(
+                    Diagnostic::new(Code::BadNumber, span, said)
+                        .hint("the largest is about 1.8e308; infinity is `inf`"),
+                );
+            }
+            None => self.report(malformed(digits, span)),
+        }
+        None
     }
 
     /// `#c31`, `#cc3311`.
@@ -148,10 +205,28 @@ impl<'a> Builder<'a> {
     }
 }
 
+/// E0004 for letters or points that stand tight behind a number.
+fn malformed(digits: &str, span: Span) -> Diagnostic {
+    let found = Diagnostic::new(Code::BadNumber, span, format!("`{}` is not a number", shorten(digits)));
+    let plain = digits.replace('_', "");
+    let end = digits.find(|c: char| c.is_alphabetic() || c == '_').unwrap_or(digits.len());
+    if let Some(whole) = digits.strip_suffix('.').filter(|d| d.parse::<f64>().is_ok()) {
+        found.hint(format!("write `{whole}.0` or `{whole}`"))
+    } else if plain.parse::<f64>().is_ok() {
+        found.hint(format!("digits are not grouped; write `{plain}`"))
+    } else if digits.starts_with("0x") || digits.starts_with("0X") {
+        found.hint("numbers are decimal; a colour is written `#cc3311`")
+    } else if digits[..end].parse::<f64>().is_ok() {
+        found.hint(format!("a product is written `{} * {}`; numbers have no units", &digits[..end], &digits[end..]))
+    } else {
+        found.hint("a number has one point at most, and digits on both sides of it")
+    }
+}
+
 /// A long number with its middle left out.
 fn shorten(digits: &str) -> String {
     match digits.len() {
         0..=24 => digits.to_owned(),
-        n => format!("{}…{}", &digits[..10], &digits[n - 8..]),
+        _ => format!("{}…", digits.chars().take(16).collect::<String>()),
     }
 }

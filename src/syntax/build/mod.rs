@@ -18,6 +18,7 @@ mod operators;
 mod outline;
 mod recover;
 mod repair;
+mod statements;
 
 /// The block kinds, as the grammar reserves them. A test holds this equal to the grammar and to the table of kinds.
 pub const KINDS: &[&str] = &[

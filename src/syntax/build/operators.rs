@@ -128,8 +128,7 @@ impl<'a> Builder<'a> {
         }
         let mut ahead = tokens.clone();
         let head = ahead.next()?;
-        ahead.next_if(|t| t.as_rule() == Rule::arrow)?;
-        let body = ahead.next()?;
+        let body = ahead.next_if(|t| t.as_rule() == Rule::expression)?;
         *tokens = ahead;
         let start = self.span(&head);
         let parameters = self.lambda_parameters(head);
@@ -201,23 +200,19 @@ impl<'a> Builder<'a> {
         {
             value = self.postfix(value, token);
         }
-        if tokens.peek().is_some_and(|t| t.as_rule() == Rule::arrow) {
-            return self.misplaced_arrow(value, tokens);
+        match tokens.next_if(|t| t.as_rule() == Rule::expression) {
+            Some(body) => self.misplaced_arrow(value, &body),
+            None => value,
         }
-        value
     }
 
     /// `f(x) => e` or `-x => e`.
-    fn misplaced_arrow(&mut self, before: Expr, tokens: &mut Flat<'a>) -> Expr {
-        let arrow = tokens.next().expect("just peeked");
-        let body = tokens.next().expect("`=>` is followed by an expression");
-        let span = before.span.to(self.span(&body));
+    fn misplaced_arrow(&mut self, before: Expr, body: &Token<'a>) -> Expr {
         self.report(
             Diagnostic::new(Code::Syntax, before.span, "a parameter before `=>` is a plain name")
-                .also(self.span(&arrow), "this makes what stands before it parameters")
                 .hint("write `p => …` or `(u, v) => …`; to compare, write `>=`"),
         );
-        Expr { kind: ExprKind::Bad, span }
+        Expr { kind: ExprKind::Bad, span: before.span.to(self.span(body)) }
     }
 
     fn join(&mut self, left: Expr, op: Infix, token: &Token<'a>, right: Expr) -> Expr {
