@@ -1,12 +1,12 @@
 //! Values to the types of the table: whether a value is of a type, what it becomes there, and how to speak of both.
 
+pub use super::display::number;
 use super::table::{Context, Property, Reported, Type};
 use super::value::Value;
 use crate::diag::Span;
 pub use crate::geometry::mesh::unit;
 use crate::scene::{Pattern, PatternKind, Rgb, SampleInput, Texture};
-use glam::{DVec2, DVec3, DVec4};
-use std::rc::Rc;
+use glam::DVec3;
 use std::sync::Arc;
 
 /// Why a value of the right type cannot be used.
@@ -249,16 +249,6 @@ fn short_text(text: &str) -> String {
     if head.len() == text.len() { format!("the text \"{text}\"") } else { format!("the text \"{head}…\"") }
 }
 
-/// A number as a person would write it: shortest round trip, exponents beyond the usual.
-pub fn number(x: f64) -> String {
-    let size = x.abs();
-    if size != 0.0 && size.is_finite() && !(1e-5..1e16).contains(&size) {
-        format!("{x:e}")
-    } else {
-        format!("{x}")
-    }
-}
-
 /// `<1, 2, 3>`.
 pub fn vector(components: &[f64]) -> String {
     let parts: Vec<String> = components.iter().map(|x| number(*x)).collect();
@@ -419,15 +409,5 @@ fn plain(value: &Value) -> String {
         Value::Number(x) => number(*x),
         Value::Vector3(v) => vector(&v.to_array()),
         _ => "…".into(),
-    }
-}
-
-/// A vector value of 1 to 4 components.
-pub fn from_components(components: &[f64]) -> Value {
-    match *components {
-        [x, y] => Value::Vector2(DVec2::new(x, y)),
-        [x, y, z] => Value::Vector3(DVec3::new(x, y, z)),
-        [x, y, z, w] => Value::Vector4(Rc::new(DVec4::new(x, y, z, w))),
-        _ => Value::Number(components.first().copied().unwrap_or(f64::NAN)),
     }
 }

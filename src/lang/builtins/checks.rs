@@ -1,8 +1,8 @@
 //! Text, and functions that speak to the person: print, assert, error.
 
-use super::text::display;
 use crate::diag::{Code, Diagnostic};
 use crate::lang::coerce;
+use crate::lang::display::{display, interpolated};
 use crate::lang::table::{Arguments, Builtin, BuiltinBody::*, Context, Outcome, Parameter};
 use crate::lang::value::Value;
 
@@ -40,13 +40,13 @@ pub static ALL: &[Builtin] = &[
 ];
 
 fn print(ctx: &mut dyn Context, arguments: &Arguments<'_>) -> Outcome {
-    let words: Vec<String> = arguments.values.iter().map(super::text::said).collect();
+    let words: Vec<String> = arguments.values.iter().map(interpolated).collect();
     ctx.print(words.join(" "));
     Ok(Value::list(Vec::new()))
 }
 
 fn assert(ctx: &mut dyn Context, arguments: &Arguments<'_>) -> Outcome {
-    let message = super::text::said(&arguments.values[1]);
+    let message = interpolated(&arguments.values[1]);
     match &arguments.values[0] {
         Value::Bool(true) => Ok(Value::list(Vec::new())),
         Value::Bool(false) => {
@@ -66,6 +66,6 @@ fn assert(ctx: &mut dyn Context, arguments: &Arguments<'_>) -> Outcome {
 }
 
 fn error(ctx: &mut dyn Context, arguments: &Arguments<'_>) -> Outcome {
-    let message = super::text::said(&arguments.values[0]);
+    let message = interpolated(&arguments.values[0]);
     Err(ctx.fail(Diagnostic::new(Code::UserError, arguments.span, message).label("the scene says so here")))
 }

@@ -4,7 +4,7 @@ use super::{components, wrong_argument};
 use crate::diag::{Code, Diagnostic, Span};
 use crate::lang::coerce;
 use crate::lang::table::{Arguments, Builtin, BuiltinBody::*, Context, Outcome, Parameter, Reported};
-use crate::lang::value::{RangeValue, Value};
+use crate::lang::value::{RangeValue, Value, vector};
 use std::rc::Rc;
 
 const LIST: &[Parameter] = &[Parameter::new("list", "a list or range")];
@@ -151,20 +151,17 @@ fn len(ctx: &mut dyn Context, arguments: &Arguments<'_>) -> Outcome {
 
 fn sum(ctx: &mut dyn Context, arguments: &Arguments<'_>) -> Outcome {
     let elements = list_argument(ctx, arguments, "sum", 0)?;
-    let mut total: Option<Vec<f64>> = None;
+    let mut total: Option<([f64; 4], usize)> = None;
     for value in &elements {
-        let Some(next) = components(value) else {
-            return Err(ctx.fail(not_summable(arguments.spans[0], value)));
-        };
-        match &mut total {
-            None => total = Some(next),
-            Some(total) if total.len() == next.len() => {
-                total.iter_mut().zip(next).for_each(|(t, x)| *t += x);
+        total = match (total, components(value)) {
+            (None, Some(first)) => Some(first),
+            (Some((sum, n)), Some((next, m))) if n == m => {
+                Some((std::array::from_fn(|i| sum[i] + next[i]), n))
             }
-            Some(_) => return Err(ctx.fail(not_summable(arguments.spans[0], value))),
-        }
+            _ => return Err(ctx.fail(not_summable(arguments.spans[0], value))),
+        };
     }
-    Ok(total.map_or(Value::Number(0.0), |t| coerce::from_components(&t)))
+    Ok(total.map_or(Value::Number(0.0), |(sum, n)| vector(&sum[..n])))
 }
 
 fn not_summable(span: Span, value: &Value) -> Diagnostic {
@@ -301,8 +298,10 @@ fn range(ctx: &mut dyn Context, arguments: &Arguments<'_>) -> Outcome {
 }
 
 fn linspace(ctx: &mut dyn Context, arguments: &Arguments<'_>) -> Outcome {
-    let Some(a) = components(&arguments.values[0]) else { return Err(misfit(ctx, arguments, "linspace", 0)) };
-    let Some(b) = components(&arguments.values[1]).filter(|b| b.len() == a.len()) else {
+    let Some((a, size)) = components(&arguments.values[0]) else {
+        return Err(misfit(ctx, arguments, "linspace", 0));
+    };
+    let Some((b, _)) = components(&arguments.values[1]).filter(|(_, m)| *m == size) else {
         return Err(misfit(ctx, arguments, "linspace", 1));
     };
     let Value::Number(n) = arguments.values[2] else { return Err(misfit(ctx, arguments, "linspace", 2)) };
@@ -316,8 +315,8 @@ fn linspace(ctx: &mut dyn Context, arguments: &Arguments<'_>) -> Outcome {
     ctx.reserve(n, arguments.span)?;
     let at = |i: usize| {
         let t = if n > 1 { i as f64 / (n - 1) as f64 } else { 0.0 };
-        let mixed: Vec<f64> = a.iter().zip(&b).map(|(a, b)| a * (1.0 - t) + b * t).collect();
-        coerce::from_components(&mixed)
+        let mixed: [f64; 4] = std::array::from_fn(|i| a[i] * (1.0 - t) + b[i] * t);
+        vector(&mixed[..size])
     };
     Ok(Value::list((0..n).map(at).collect()))
 }

@@ -12,16 +12,14 @@ mod noise;
 pub mod patterns;
 #[cfg(test)]
 mod tests;
-mod text;
 mod vectors;
 
-pub use text::display;
-
 use super::coerce;
-use super::table::{Arguments, Builtin, BuiltinBody, Context, Outcome};
-use super::value::Value;
+use super::display::display;
+use super::table::{Arguments, Builtin, BuiltinBody, Context, Outcome, ShapeOf};
+use super::value::{Value, vector};
 use crate::diag::{Code, Diagnostic, Span};
-use crate::math::field::MAX_CALL;
+use crate::math::field::{CallN, MAX_CALL};
 use glam::DVec3;
 
 /// The families of functions with their titles, in the order of the reference.
@@ -131,22 +129,29 @@ pub fn defaults(builtin: &Builtin) -> Vec<Value> {
 /// Computes a call whose arguments stand in the order of the parameters, defaults filled in. Reports arguments of the wrong
 /// type, and arguments at which the function is undefined.
 pub fn call(ctx: &mut dyn Context, builtin: &'static Builtin, arguments: &Arguments<'_>) -> Outcome {
-    let spread = |ctx: &mut dyn Context, f: &dyn Fn(&[f64]) -> f64| by_component(ctx, builtin, arguments, f);
-    match &builtin.body {
-        BuiltinBody::Number1(f) => match arguments.values {
-            [Value::Number(x)] => checked(ctx, builtin, arguments, Value::Number(f(*x))),
-            _ => spread(ctx, &|x| f(x[0])),
-        },
-        BuiltinBody::Number2(f) => match arguments.values {
-            [Value::Number(a), Value::Number(b)] => {
-                checked(ctx, builtin, arguments, Value::Number(f(*a, *b)))
-            }
-            _ => spread(ctx, &|x| x[1..].iter().fold(x[0], |a, b| f(a, *b))),
-        },
-        BuiltinBody::Number3(f) => spread(ctx, &|x| f(x[0], x[1], x[2])),
-        BuiltinBody::Numbers(shape, f) => numbers(ctx, builtin, arguments, *shape, *f),
-        BuiltinBody::General(f) => f(ctx, arguments),
+    let result = match (&builtin.body, arguments.values) {
+        (BuiltinBody::Number1(f), [Value::Number(x)]) => Value::Number(f(*x)),
+        (BuiltinBody::Number2(f), [Value::Number(a), Value::Number(b)]) => Value::Number(f(*a, *b)),
+        (BuiltinBody::Number3(f), [Value::Number(a), Value::Number(b), Value::Number(c)]) => {
+            Value::Number(f(*a, *b, *c))
+        }
+        (BuiltinBody::Number1(f), _) => by_component(ctx, builtin, arguments, &|x| f(x[0]))?,
+        (BuiltinBody::Number2(f), _) => {
+            by_component(ctx, builtin, arguments, &|x| x[1..].iter().fold(x[0], |a, b| f(a, *b)))?
+        }
+        (BuiltinBody::Number3(f), _) => by_component(ctx, builtin, arguments, &|x| f(x[0], x[1], x[2]))?,
+        (BuiltinBody::Numbers(shape, f), _) => numbers(ctx, builtin, arguments, *shape, *f)?,
+        (BuiltinBody::General(f), _) => return f(ctx, arguments),
+    };
+    if is_finite(&result) || !arguments.values.iter().all(is_finite) {
+        Ok(result)
+    } else {
+        Err(ctx.fail(undefined(builtin, arguments)))
     }
+}
+
+fn is_finite(value: &Value) -> bool {
+    components(value).is_none_or(|(c, n)| c[..n].iter().all(|x| x.is_finite()))
 }
 
 /// Applies a function of numbers to each component; numbers among vectors stand for every component.
@@ -156,51 +161,74 @@ fn by_component(
     arguments: &Arguments<'_>,
     f: &dyn Fn(&[f64]) -> f64,
 ) -> Outcome {
-    let components = all_components(ctx, builtin, arguments)?;
-    let n = components.iter().map(|c| c.len()).max().unwrap_or(1);
-    if let Some(i) = components.iter().position(|c| c.len() != 1 && c.len() != n) {
-        let said = Diagnostic::new(
-            Code::TypeMismatch,
-            arguments.spans[i],
-            format!(
-                "`{}` takes vectors of one size, and this has {} components beside {n}",
-                builtin.name,
-                components[i].len()
-            ),
-        )
-        .hint("take components, as in `v.xy`");
+    let mut all = Vec::with_capacity(arguments.values.len());
+    for i in 0..arguments.values.len() {
+        all.push(argument_components(ctx, builtin, arguments, i)?);
+    }
+    let n = all.iter().map(|(_, n)| *n).max().unwrap_or(1);
+    if let Some(i) = all.iter().position(|(_, m)| *m != 1 && *m != n) {
+        let message = format!(
+            "`{}` takes vectors of one size, and this has {} components beside {n}",
+            builtin.name, all[i].1
+        );
+        let said = Diagnostic::new(Code::TypeMismatch, arguments.spans[i], message)
+            .hint("take components, as in `v.xy`");
         return Err(ctx.fail(said));
     }
-    let mut row = vec![0.0; components.len()];
+    let mut row = vec![0.0; all.len()];
     let mut result = [0.0; 4];
     for (i, to) in result.iter_mut().enumerate().take(n) {
-        row.iter_mut().zip(&components).for_each(|(x, c)| *x = if c.len() == 1 { c[0] } else { c[i] });
+        row.iter_mut().zip(&all).for_each(|(x, (c, m))| *x = if *m == 1 { c[0] } else { c[i] });
         *to = f(&row);
     }
-    checked(ctx, builtin, arguments, coerce::from_components(&result[..n]))
+    Ok(vector(&result[..n]))
 }
 
+/// The components of all arguments in a row, to those of the result.
 fn numbers(
     ctx: &mut dyn Context,
     builtin: &'static Builtin,
     arguments: &Arguments<'_>,
-    shape: crate::lang::table::ShapeOf,
-    f: crate::math::field::CallN,
+    shape: ShapeOf,
+    f: CallN,
 ) -> Outcome {
-    let components = all_components(ctx, builtin, arguments)?;
-    let sizes: Vec<usize> = components.iter().map(Vec::len).collect();
-    let flat: Vec<f64> = components.concat();
-    let mut result = [0.0; 4];
-    match shape(&sizes) {
-        Some(n) if flat.len() <= MAX_CALL => {
-            f(&flat, &mut result[..n]);
-            checked(ctx, builtin, arguments, coerce::from_components(&result[..n]))
-        }
-        Some(_) => {
+    let (mut flat, mut sizes, mut total) = ([0.0; MAX_CALL], [0; MAX_CALL], 0);
+    for i in 0..arguments.values.len() {
+        let (c, n) = argument_components(ctx, builtin, arguments, i)?;
+        if total + n > MAX_CALL {
             let message = format!("`{}` takes at most {MAX_CALL} numbers in all", builtin.name);
-            Err(ctx.fail(Diagnostic::new(Code::WrongArity, arguments.span, message)))
+            return Err(ctx.fail(Diagnostic::new(Code::WrongArity, arguments.spans[i], message)));
         }
-        None => Err(ctx.fail(wrong_shapes(builtin, arguments))),
+        flat[total..total + n].copy_from_slice(&c[..n]);
+        sizes[i] = n;
+        total += n;
+    }
+    let Some(n) = shape(&sizes[..arguments.values.len()]) else {
+        return Err(ctx.fail(wrong_shapes(builtin, arguments)));
+    };
+    let mut result = [0.0; 4];
+    f(&flat[..total], &mut result[..n]);
+    Ok(vector(&result[..n]))
+}
+
+fn argument_components(
+    ctx: &mut dyn Context,
+    builtin: &Builtin,
+    arguments: &Arguments<'_>,
+    i: usize,
+) -> Outcome<([f64; 4], usize)> {
+    components(&arguments.values[i])
+        .ok_or_else(|| ctx.fail(wrong_argument(builtin, i, &arguments.values[i], arguments.spans[i])))
+}
+
+/// The components of a number or vector, and how many they are.
+pub fn components(value: &Value) -> Option<([f64; 4], usize)> {
+    match value {
+        Value::Number(x) => Some(([*x, 0.0, 0.0, 0.0], 1)),
+        Value::Vector2(v) => Some(([v.x, v.y, 0.0, 0.0], 2)),
+        Value::Vector3(v) => Some(([v.x, v.y, v.z, 0.0], 3)),
+        Value::Vector4(v) => Some((v.to_array(), 4)),
+        _ => None,
     }
 }
 
@@ -214,29 +242,6 @@ fn wrong_shapes(builtin: &Builtin, arguments: &Arguments<'_>) -> Diagnostic {
         format!("`{}` cannot take {}", builtin.name, coerce::listed(&given, "and")),
     )
     .hint(format!("it takes {}, as in `{}`", coerce::listed(&takes, "and"), builtin.example.0))
-}
-
-fn all_components(
-    ctx: &mut dyn Context,
-    builtin: &Builtin,
-    arguments: &Arguments<'_>,
-) -> Outcome<Vec<Vec<f64>>> {
-    let each = arguments.values.iter().zip(arguments.spans).enumerate();
-    each.map(|(i, (value, span))| {
-        components(value).ok_or_else(|| ctx.fail(wrong_argument(builtin, i, value, *span)))
-    })
-    .collect()
-}
-
-/// The components of a number or vector.
-pub fn components(value: &Value) -> Option<Vec<f64>> {
-    match value {
-        Value::Number(x) => Some(vec![*x]),
-        Value::Vector2(v) => Some(v.to_array().to_vec()),
-        Value::Vector3(v) => Some(v.to_array().to_vec()),
-        Value::Vector4(v) => Some(v.to_array().to_vec()),
-        _ => None,
-    }
 }
 
 /// "`sqrt` takes a number or vector as `x`, and this is a text".
@@ -256,20 +261,6 @@ pub fn wrong_argument(builtin: &Builtin, i: usize, value: &Value, span: Span) ->
         Value::List(_) => said.hint("apply it to each element, as in `[f(e) for e in list]`"),
         _ => said.hint(format!("write it like `{}`", builtin.example.0)),
     }
-}
-
-/// A result, unless it is not finite though the arguments are.
-fn checked(
-    ctx: &mut dyn Context,
-    builtin: &'static Builtin,
-    arguments: &Arguments<'_>,
-    result: Value,
-) -> Outcome {
-    let finite = |v: &Value| components(v).is_none_or(|c| c.iter().all(|x| x.is_finite()));
-    if finite(&result) || !arguments.values.iter().all(finite) {
-        return Ok(result);
-    }
-    Err(ctx.fail(undefined(builtin, arguments)))
 }
 
 /// What to say where a function has no finite value at finite arguments.

@@ -216,7 +216,7 @@ fn choice<T: Copy>(
         format!(
             "`{name}` takes {}, not {}",
             coerce::listed(&words, "or"),
-            super::display(&arguments.values[i])
+            crate::lang::display::display(&arguments.values[i])
         ),
     );
     Err(ctx.fail(match &arguments.values[i] {

@@ -47,7 +47,7 @@ pub fn check(ctx: &mut dyn Context, material: &Material, block: &Block) {
             crate::lang::coerce::listed(&shares.iter().map(|s| format!("`{s}`")).collect::<Vec<_>>(), "and")
         )),
     };
-    let said = shares.iter().fold(said, |said, name| said.also(block.place(name), "this counts"));
+    let said = shares.iter().fold(said, |said, name| said.also(block.place(name), "counts"));
     ctx.report(said);
 }
 

@@ -80,7 +80,7 @@ mod building {
     fn written(text: &str) -> Vec<Value> {
         if let Some(inner) = text.strip_prefix('<').and_then(|t| t.strip_suffix('>')) {
             let components: Vec<f64> = inner.split(',').map(|x| x.trim().parse().unwrap()).collect();
-            return vec![crate::lang::coerce::from_components(&components)];
+            return vec![crate::lang::value::vector(&components)];
         }
         let one =
             |part: &str| crate::lang::builtins::default_value(part.trim()).unwrap_or_else(|| w(part.trim()));

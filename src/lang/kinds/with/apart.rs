@@ -1,9 +1,8 @@
 //! Values taken apart into the properties that build them.
 
-use crate::lang::coerce::from_components;
 use crate::lang::kinds::{lights, objects, settings, shapes};
 use crate::lang::table::Kind;
-use crate::lang::value::{Given, Value};
+use crate::lang::value::{self, Given, Value};
 use crate::scene::{
     Camera, Fresnel, Light, LightSource, Lobe, Material, MeshSource, Projection, Shape, Sky, Texture,
 };
@@ -189,7 +188,7 @@ fn is(texture: &Texture, number: f64) -> bool {
 
 fn colour(texture: &Texture) -> Value {
     match texture {
-        Texture::Constant(c) => from_components(&c.to_array()),
+        Texture::Constant(c) => value::vector(&c.to_array()),
         Texture::Pattern(pattern) => Value::Pattern(pattern.clone()),
     }
 }
