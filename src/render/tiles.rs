@@ -42,7 +42,7 @@ pub struct Picture<'a> {
 /// counted tile by tile.
 pub const TILE: u32 = 32;
 
-/// Renders the settings' crop. Once `cancel` is true, no further row of a tile is begun, and the film comes back as far as it
+/// Renders the settings' crop. Once `cancel` is true, no further sample is begun, and the film comes back as far as it
 /// is, with [`Film::finished`] telling which pixels count.
 pub fn render(picture: Picture<'_>, progress: &dyn Progress, cancel: &AtomicBool) -> Film {
     render_in_tiles(picture, TILE, progress, cancel)
@@ -98,22 +98,30 @@ fn tiles_of(crop: Crop, tile: u32) -> Vec<Crop> {
 fn render_tile(picture: Picture<'_>, crop: Crop, cancel: &AtomicBool) -> Film {
     let mut film = Film::new(picture.settings.size, crop);
     for row in 0..crop.height {
-        if cancel.load(Ordering::Relaxed) {
-            break;
-        }
         for column in 0..crop.width {
+            let pixel = [crop.x + column, crop.y + row];
+            let Some(radiance) = render_pixel(picture, pixel, &mut film.report, cancel) else { return film };
             let i = (row * crop.width + column) as usize;
-            film.pixels[i] = render_pixel(picture, [crop.x + column, crop.y + row], &mut film.report);
+            film.pixels[i] = radiance;
             film.finished[i] = true;
         }
     }
     film
 }
 
-fn render_pixel(picture: Picture<'_>, pixel: [u32; 2], report: &mut Report) -> Rgb {
+/// The radiance of a pixel; none where it was cancelled before its last sample.
+fn render_pixel(
+    picture: Picture<'_>,
+    pixel: [u32; 2],
+    report: &mut Report,
+    cancel: &AtomicBool,
+) -> Option<Rgb> {
     let mut sum = PixelSum::default();
     let mut undefined = None;
     for sample in 0..picture.settings.samples {
+        if cancel.load(Ordering::Relaxed) {
+            return None;
+        }
         let mut sampler = Sampler::new(picture.settings.seed, pixel[0], pixel[1], sample);
         if let Some(ray) = camera_ray(picture, pixel, &mut sampler) {
             let before = sum.non_finite;
@@ -127,13 +135,13 @@ fn render_pixel(picture: Picture<'_>, pixel: [u32; 2], report: &mut Report) -> R
         undefined = undefined.or(sampler.undefined);
         report.rays += sampler.rays;
     }
-    match undefined {
+    Some(match undefined {
         Some(fault) => {
             report.add_undefined(Fault { pixel, count: 1, span: Some(fault.span), kind: Some(fault.kind) });
             Film::UNDEFINED
         }
         None => sum.mean(),
-    }
+    })
 }
 
 /// The ray of a sample: through the pixel's centre for the only one, else through a point of its square.

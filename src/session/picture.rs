@@ -122,7 +122,8 @@ pub fn faults(film: &Film) -> Vec<Diagnostic> {
 fn undefined(fault: &Fault) -> Diagnostic {
     let [x, y] = fault.pixel;
     let pixels = if fault.count == 1 { "1 pixel".to_owned() } else { format!("{} pixels", fault.count) };
-    let message = format!("this function is undefined at {pixels}; the first is ({x}, {y})");
+    let what = fault.kind.map_or("a function without a value", |kind| kind.text());
+    let message = format!("{what} at {pixels}; the first is ({x}, {y})");
     Diagnostic::new(Code::UndefinedSample, fault.span, message).label("no finite value there").hint(
         "these pixels are magenta; keep a divisor from 0, clamp a root's argument, or choose with `? :`",
     )

@@ -32,7 +32,16 @@ fn run(code: Code, example: &Example, all: &[Example]) -> Run {
     for file in all.iter().filter(|e| e.role == "file") {
         std::fs::write(folder.path().join(file.rest.trim()), &file.text).unwrap();
     }
-    let is_render = matches!(code, Code::NoCamera | Code::UnknownCamera | Code::UndefinedSample | Code::MeshRepaired | Code::MissingMaterialFile | Code::BadImage);
+    let is_render = matches!(
+        code,
+        Code::NoCamera
+            | Code::UnknownCamera
+            | Code::UndefinedSample
+            | Code::BadMesh
+            | Code::MeshRepaired
+            | Code::MissingMaterialFile
+            | Code::BadImage
+    );
     let command = if is_render { "render --size 16x12 --samples 1" } else { "check --format short" };
     folder.ogee(&format!("{command} {} scene.scene", example.rest))
 }
@@ -62,7 +71,8 @@ fn broken_scenes_have_the_fault_and_mended_ones_none() {
                 _ => true,
             };
             if !is_right {
-                faults += &format!("{} {}: {codes:?}\n{}{}\n", code.text(), example.role, example.text, run.stderr);
+                faults +=
+                    &format!("{} {}: {codes:?}\n{}{}\n", code.text(), example.role, example.text, run.stderr);
             }
         }
     }

@@ -157,8 +157,8 @@ pub struct Eval {
     /// A scene whose names the expression may use
     #[arg(long = "in", value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub file: Option<PathBuf>,
-    /// Print numbers with so many digits after the point [default: as many as bring the same number back]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(0..=100))]
+    /// Print numbers to so many significant digits [default: as many as bring the same number back]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=100))]
     pub digits: Option<u8>,
     #[command(flatten)]
     pub evaluation: Evaluation,
