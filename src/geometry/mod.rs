@@ -7,4 +7,5 @@ pub mod curve;
 pub mod frame;
 pub mod function;
 pub mod mesh;
+pub mod patch;
 pub mod path;
