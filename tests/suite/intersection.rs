@@ -1,5 +1,10 @@
 //! Rays against shapes, trees and placements: closed forms, hard cases, and one oracle, the list of all shapes.
 
+mod offsets;
+mod placements;
+mod quadrics;
+mod triangles;
+
 use glam::DVec3;
 use ogee::diag::{SourceId, Span};
 use ogee::geometry::mesh::Mesh;

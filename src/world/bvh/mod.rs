@@ -7,7 +7,11 @@
 
 mod build;
 mod frame;
+#[cfg(test)]
+mod tests;
 mod traverse;
+
+pub use traverse::clip;
 
 use crate::math::Aabb;
 use frame::Frame;
