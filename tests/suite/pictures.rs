@@ -45,6 +45,22 @@ fn still_life(s: f64) -> Vec<Node> {
         object(sphere(v(0.0, 1.0, 0.0), s), &tinted),
         object(sphere(v(-1.7, 0.6, 0.4), 0.6 * s), &shiny),
         placed(cuboid(v(-0.4, -0.4, -0.4), v(0.4, 0.4, 0.4)), &diffuse(0.7), Some(turned)),
+        object(
+            Shape::Cone(Box::new(Cone {
+                from: v(1.0, 0.0, 1.2),
+                to: v(1.0, 0.7, 1.2),
+                radii: [0.4 * s, 0.0],
+            })),
+            &diffuse(0.4),
+        ),
+        object(
+            Shape::Torus(Box::new(Torus {
+                center: v(0.6, 0.25, 2.0),
+                axis: DVec3::new(0.0, 0.6, 0.8),
+                radii: [0.3 * s, 0.1 * s],
+            })),
+            &shiny,
+        ),
         point(v(3.0, 5.0, 3.0), 40.0 * s * s),
         light(spot),
         sun(DVec3::new(-0.3, -1.0, 0.2), 0.4),

@@ -138,7 +138,16 @@ fn a_ball_on_the_floor_shadows_the_sky_down_to_the_contact() {
 
 #[test]
 fn glass_of_any_shape_in_a_uniform_sky_is_as_bright_as_the_sky() {
-    let shapes = [sphere(DVec3::ZERO, 1.0), cuboid(-DVec3::ONE * 0.6, DVec3::ONE * 0.6)];
+    let shapes = [
+        sphere(DVec3::ZERO, 1.0),
+        cuboid(-DVec3::ONE * 0.6, DVec3::ONE * 0.6),
+        Shape::Torus(Box::new(Torus {
+            center: DVec3::ZERO,
+            axis: DVec3::new(0.0, 0.6, 0.8),
+            radii: [0.7, 0.3],
+        })),
+        Shape::Cone(Box::new(Cone { from: -Y, to: Y, radii: [0.8, 0.3] })),
+    ];
     for shape in shapes {
         for law in [Fresnel::Exact, Fresnel::Schlick] {
             let material = layered(0.0, |l| {
