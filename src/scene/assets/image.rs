@@ -76,7 +76,12 @@ impl Image {
         }
         let mut reader = ImageReader::with_format(Cursor::new(bytes), format);
         reader.limits(limits());
-        Ok(Image::from_decoded(reader.decode().map_err(broken)?, format))
+        let mut decoded = Image::from_decoded(reader.decode().map_err(broken)?, format);
+        if let (ImageFormat::Hdr, Texels::Linear(data)) = (format, &mut decoded.texels) {
+            let exposure = radiance_exposure(bytes);
+            data.iter_mut().for_each(|x| *x /= exposure);
+        }
+        Ok(decoded)
     }
 
     /// A picture of linear RGB, rows from the top; for tests and for what is made in memory.
@@ -179,6 +184,16 @@ impl Image {
     }
 }
 
+/// What a Radiance file's numbers were multiplied by: the product of its EXPOSURE lines.
+fn radiance_exposure(bytes: &[u8]) -> f32 {
+    let header = bytes.split(|b| *b == b'\n').take_while(|line| !line.is_empty());
+    let value = |line: &[u8]| -> Option<f32> {
+        std::str::from_utf8(line.strip_prefix(b"EXPOSURE=")?).ok()?.trim().parse().ok()
+    };
+    let product: f32 = header.filter_map(value).product();
+    if product.is_normal() && product > 0.0 { product } else { 1.0 }
+}
+
 /// RGB and alpha from 1 to 4 channels.
 fn spread(channels: usize, colour: impl Fn(usize) -> f64, alpha: impl Fn(usize) -> f64) -> [f64; 4] {
     match channels {
@@ -276,6 +291,28 @@ mod tests {
             DynamicImage::ImageRgb32F(image::ImageBuffer::from_pixel(1, 1, image::Rgb([4.0, 0.5, 0.0])));
         let hdr = Image::decode(&encode(&picture, ImageFormat::Hdr), Path::new("a.hdr")).unwrap();
         assert_eq!(hdr.texel(0, 0, Reading::Colour), [4.0, 0.5, 0.0, 1.0]);
+    }
+
+    #[test]
+    fn exposure_of_radiance_files_is_undone() {
+        let picture =
+            DynamicImage::ImageRgb32F(image::ImageBuffer::from_pixel(1, 1, image::Rgb([4.0, 0.5, 0.0])));
+        let mut bytes = encode(&picture, ImageFormat::Hdr);
+        let first_line = bytes.iter().position(|b| *b == b'\n').unwrap() + 1;
+        bytes.splice(first_line..first_line, b"EXPOSURE=2\nEXPOSURE= 4.0\n".iter().copied());
+        let hdr = Image::decode(&bytes, Path::new("a.hdr")).unwrap();
+        assert_eq!(hdr.texel(0, 0, Reading::Colour), [0.5, 0.0625, 0.0, 1.0]);
+    }
+
+    #[test]
+    fn exr_files_keep_light_above_one() {
+        let picture = DynamicImage::ImageRgba32F(image::ImageBuffer::from_pixel(
+            1,
+            1,
+            image::Rgba([40.0, 0.5, -1.0, 0.25]),
+        ));
+        let exr = Image::decode(&encode(&picture, ImageFormat::OpenExr), Path::new("a.exr")).unwrap();
+        assert_eq!(exr.texel(0, 0, Reading::Colour), [40.0, 0.5, -1.0, 0.25]);
     }
 
     #[test]
