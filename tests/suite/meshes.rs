@@ -9,6 +9,7 @@ use std::path::{Path, PathBuf};
 const SPAN: Span = Span { source: SourceId(0), start: 0, end: 0 };
 
 /// The folder of test data; none, said aloud, where it is not given.
+#[expect(clippy::print_stdout, reason = "a skipped test says so")]
 fn data() -> Option<PathBuf> {
     let folder = std::env::var_os("OGEE_DATA").map(PathBuf::from);
     if folder.is_none() {
@@ -22,9 +23,9 @@ fn load(path: &Path, smooth: Option<bool>) -> Result<LoadedMesh, Box<Diagnostic>
 }
 
 fn load_text(text: &str) -> Result<LoadedMesh, Box<Diagnostic>> {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = tempfile::tempdir().expect("a folder for the test");
     let path = folder.path().join("a.obj");
-    std::fs::write(&path, text).unwrap();
+    std::fs::write(&path, text).expect("a file for the test");
     load(&path, None)
 }
 

@@ -13,6 +13,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 const SPAN: Span = Span { source: SourceId(0), start: 3, end: 9 };
 
 /// The folder of test data; none, said aloud, where it is not given.
+#[expect(clippy::print_stdout, reason = "a skipped test says so")]
 fn data() -> Option<PathBuf> {
     let folder = std::env::var_os("OGEE_DATA").map(PathBuf::from);
     if folder.is_none() {
@@ -97,7 +98,7 @@ fn two_texels(folder: &Path) -> PathBuf {
             2,
             |_, y| if y == 0 { image::Rgb([255; 3]) } else { image::Rgb([128, 0, 0]) },
         );
-    rows.save(&path).unwrap();
+    rows.save(&path).expect("a picture for the test");
     path
 }
 
