@@ -343,8 +343,8 @@ pub enum BuiltinBody {
     Number1(fn(f64) -> f64),
     /// A number from two. A variadic one folds further arguments from the left: min(a, b, c) = min(min(a, b), c).
     Number2(fn(f64, f64) -> f64),
-    /// A number from three.
-    Number3(fn(f64, f64, f64) -> f64),
+    /// A number from three, and the same as tapes call it.
+    Number3(fn(f64, f64, f64) -> f64, CallN),
     /// A number or vector from numbers and vectors as a whole (`dot`, `noise`): the components of all arguments, one after the
     /// other, to those of the result. Tapes call it as it is. NaN says "undefined here".
     Numbers(ShapeOf, CallN),

@@ -44,7 +44,7 @@ pub static ALL: &[Builtin] = &[
             Parameter::new("low", "a number or vector").or("0"),
             Parameter::new("high", "a number or vector").or("1"),
         ],
-        Number3(clamp),
+        Number3(clamp, |of, to| to[0] = clamp(of[0], of[1], of[2])),
         "x cut to low … high.",
         ("clamp(1.5, 0, 1)", "1"),
     )
@@ -56,7 +56,7 @@ pub static ALL: &[Builtin] = &[
             Parameter::new("b", "a number or vector"),
             Parameter::new("t", "a number or vector"),
         ],
-        Number3(mix),
+        Number3(mix, |of, to| to[0] = mix(of[0], of[1], of[2])),
         "Linear interpolation: a at t = 0, b at t = 1, and beyond along the same line.",
         ("mix(<0, 0>, <2, 4>, 0.5)", "<1, 2>"),
     ),
@@ -67,7 +67,7 @@ pub static ALL: &[Builtin] = &[
             Parameter::new("edge1", "a number or vector"),
             Parameter::new("x", "a number or vector"),
         ],
-        Number3(smoothstep),
+        Number3(smoothstep, |of, to| to[0] = smoothstep(of[0], of[1], of[2])),
         "0 up to edge0, 1 from edge1 on, and 3t² − 2t³ between.",
         ("smoothstep(0, 2, 0.5)", "0.15625"),
     )

@@ -132,14 +132,14 @@ pub fn call(ctx: &mut dyn Context, builtin: &'static Builtin, arguments: &Argume
     let result = match (&builtin.body, arguments.values) {
         (BuiltinBody::Number1(f), [Value::Number(x)]) => Value::Number(f(*x)),
         (BuiltinBody::Number2(f), [Value::Number(a), Value::Number(b)]) => Value::Number(f(*a, *b)),
-        (BuiltinBody::Number3(f), [Value::Number(a), Value::Number(b), Value::Number(c)]) => {
+        (BuiltinBody::Number3(f, _), [Value::Number(a), Value::Number(b), Value::Number(c)]) => {
             Value::Number(f(*a, *b, *c))
         }
         (BuiltinBody::Number1(f), _) => by_component(ctx, builtin, arguments, &|x| f(x[0]))?,
         (BuiltinBody::Number2(f), _) => {
             by_component(ctx, builtin, arguments, &|x| x[1..].iter().fold(x[0], |a, b| f(a, *b)))?
         }
-        (BuiltinBody::Number3(f), _) => by_component(ctx, builtin, arguments, &|x| f(x[0], x[1], x[2]))?,
+        (BuiltinBody::Number3(f, _), _) => by_component(ctx, builtin, arguments, &|x| f(x[0], x[1], x[2]))?,
         (BuiltinBody::Numbers(shape, f), _) => numbers(ctx, builtin, arguments, *shape, *f)?,
         (BuiltinBody::General(f), _) => return f(ctx, arguments),
     };

@@ -6,33 +6,15 @@ use crate::diag::{Code, Diagnostic, Span};
 use crate::lang::builtins;
 use crate::lang::coerce::shown;
 use crate::lang::resolve::program::{
-    Access, Argument, CallBuiltin, CallFunction, CallMethod, CallValue, Expr, FunctionBody, FunctionId,
+    Access, Argument, CallBuiltin, CallFunction, CallMethod, CallValue, FunctionBody, FunctionId,
 };
 use crate::lang::table::{Arguments, Builtin, BuiltinBody, Context, Outcome, Reported};
 use crate::lang::value::Value;
 use std::rc::Rc;
 
 impl<'p> Evaluator<'p> {
-    /// A call of a function of one number.
-    #[inline]
-    pub(super) fn call_number(
-        &mut self,
-        builtin: &'static Builtin,
-        f: fn(f64) -> f64,
-        argument: &'p Expr,
-        span: Span,
-    ) -> Outcome {
-        let value = self.expr(argument)?;
-        if let Value::Number(x) = value {
-            let result = f(x);
-            if result.is_finite() {
-                return Ok(Value::Number(result));
-            }
-        }
-        self.call_table(builtin, &[value], &[argument.span], span)
-    }
-
-    fn call_table(
+    /// A call of a builtin with values, and the guards on what it makes.
+    pub(super) fn call_table(
         &mut self,
         builtin: &'static Builtin,
         values: &[Value],

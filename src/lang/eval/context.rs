@@ -52,11 +52,8 @@ impl Context for Evaluator<'_> {
         outputs: &[usize],
         at: Span,
     ) -> Outcome<Arc<SampledFunction>> {
-        match compile::compile(self.program, &self.globals, function, input, outputs, at) {
-            Ok(field) => Ok(Arc::new(field)),
-            Err(Some(diagnostic)) => Err(self.fail(diagnostic)),
-            Err(None) => Err(crate::lang::table::Reported),
-        }
+        let program = self.program;
+        compile::compile(self, program, &compile::Request { function, input, outputs, at }).map(Arc::new)
     }
 
     fn reserve(&mut self, elements: usize, at: Span) -> Outcome<()> {
@@ -65,5 +62,11 @@ impl Context for Evaluator<'_> {
 
     fn time(&self) -> (f64, f64) {
         self.run.time
+    }
+}
+
+impl compile::Host for Evaluator<'_> {
+    fn global(&self, slot: u32) -> super::slots::Slot {
+        self.globals[slot as usize].clone()
     }
 }

@@ -7,24 +7,36 @@ use super::slots::{Closure, Empty, Slot};
 use crate::diag::{Code, Diagnostic, Span};
 use crate::lang::coerce::shown;
 use crate::lang::display;
-use crate::lang::resolve::program::{
-    Access, Arithmetic, Comparison, Comprehension, Expr, ExprKind, Range, TextPart,
-};
+use crate::lang::resolve::program::{Access, Comparison, Comprehension, Expr, ExprKind, Range, TextPart};
 use crate::lang::table::{Context, Outcome, Reported};
 use crate::lang::value::{RangeValue, Value, vector};
-use crate::math::error::gamma;
 use glam::DVec3;
 use std::rc::Rc;
 
 impl<'p> Evaluator<'p> {
     /// The value of an expression.
+    #[inline]
     pub(super) fn expr(&mut self, e: &'p Expr) -> Outcome {
         match &e.kind {
             ExprKind::Number(x) => Ok(Value::Number(*x)),
+            ExprKind::Arithmetic(..) | ExprKind::CallNumber(..) | ExprKind::Negate(_) => match self.number(e)
+            {
+                Some(x) => Ok(Value::Number(x)),
+                None => self.spilled(),
+            },
+            _ => self.general(e),
+        }
+    }
+
+    /// The value of an expression that [`Evaluator::number`] has no fast path for.
+    pub(super) fn general(&mut self, e: &'p Expr) -> Outcome {
+        match &e.kind {
             ExprKind::Name(access) => self.read(*access, e.span),
-            ExprKind::Arithmetic(op, operands) => self.arithmetic(*op, operands, e.span),
             ExprKind::Compare(op, operands) => self.compare(*op, operands, e.span),
-            ExprKind::CallNumber(builtin, f, argument) => self.call_number(builtin, *f, argument, e.span),
+            ExprKind::Number(_)
+            | ExprKind::Arithmetic(..)
+            | ExprKind::CallNumber(..)
+            | ExprKind::Negate(_) => self.expr(e),
             ExprKind::CallFunction(call) => self.call_function(call, e.span),
             ExprKind::CallBuiltin(call) => self.call_builtin(call, e.span),
             ExprKind::Component(i, base) => self.component(*i, base, e.span),
@@ -34,10 +46,6 @@ impl<'p> Evaluator<'p> {
             ExprKind::Choice(parts) => {
                 let chosen = if self.condition(&parts.0)? { &parts.1 } else { &parts.2 };
                 self.expr(chosen)
-            }
-            ExprKind::Negate(operand) => {
-                let value = self.expr(operand)?;
-                operators::negate(&value, e.span).map_err(|said| self.fail(said))
             }
             ExprKind::Not(operand) => Ok(Value::Bool(!self.truth(operand, "!")?)),
             ExprKind::And(parts) => {
@@ -95,24 +103,19 @@ impl<'p> Evaluator<'p> {
     }
 
     #[inline]
-    fn arithmetic(&mut self, op: Arithmetic, operands: &'p (Expr, Expr), span: Span) -> Outcome {
-        let a = self.expr(&operands.0);
-        let b = self.expr(&operands.1);
+    fn compare(&mut self, op: Comparison, operands: &'p (Expr, Expr), span: Span) -> Outcome {
+        let a = match self.number(&operands.0) {
+            Some(x) => Ok(Value::Number(x)),
+            None => self.spilled(),
+        };
+        let b = match self.number(&operands.1) {
+            Some(y) => Ok(Value::Number(y)),
+            None => self.spilled(),
+        };
         let (a, b) = (a?, b?);
         if let (&Value::Number(x), &Value::Number(y)) = (&a, &b) {
-            let result = operators::number(op, x, y);
-            if result.is_finite() {
-                return Ok(Value::Number(result));
-            }
+            return Ok(Value::Bool(operators::compare(op, x, y)));
         }
-        operators::arithmetic(op, &a, &b, span).map_err(|said| self.fail(said))
-    }
-
-    #[inline]
-    fn compare(&mut self, op: Comparison, operands: &'p (Expr, Expr), span: Span) -> Outcome {
-        let a = self.expr(&operands.0);
-        let b = self.expr(&operands.1);
-        let (a, b) = (a?, b?);
         let result = match op {
             Comparison::Equal => Ok(equal(&a, &b)),
             Comparison::NotEqual => Ok(!equal(&a, &b)),
@@ -156,12 +159,20 @@ impl<'p> Evaluator<'p> {
 
     #[inline]
     fn vector_component(&mut self, e: &'p Expr) -> Outcome<f64> {
-        match self.expr(e)? {
-            Value::Number(x) => Ok(x),
-            other => {
+        match self.number(e) {
+            Some(x) => Ok(x),
+            None => Err(self.not_a_component(e.span)),
+        }
+    }
+
+    #[cold]
+    fn not_a_component(&mut self, span: Span) -> Reported {
+        match self.spilled() {
+            Ok(other) => {
                 let message = format!("a component is a number, and this is {}", shown(&other));
-                Err(self.fail(Diagnostic::new(Code::TypeMismatch, e.span, message)))
+                self.fail(Diagnostic::new(Code::TypeMismatch, span, message))
             }
+            Err(reported) => reported,
         }
     }
 
@@ -240,13 +251,13 @@ impl<'p> Evaluator<'p> {
         let end = self.range_number(&range.end, range.step.is_none());
         let step = range.step.as_ref().map_or(Ok(1.0), |step| self.range_number(step, false));
         let (start, end, step) = (start?, end?, step?);
-        if step == 0.0 {
-            let at = range.step.as_ref().map_or(span, |s| s.span);
-            let said = Diagnostic::new(Code::Undefined, at, "a range cannot go on in steps of 0");
-            return Err(self.fail(said));
+        match RangeValue::new(start, end, step, range.inclusive) {
+            Some(range) => Ok(Value::Range(Rc::new(range))),
+            None => {
+                let at = range.step.as_ref().map_or(span, |s| s.span);
+                Err(self.fail(Diagnostic::new(Code::Undefined, at, "a range cannot go on in steps of 0")))
+            }
         }
-        let len = range_len(start, end, step, range.inclusive);
-        Ok(Value::Range(Rc::new(RangeValue { start, end, step, len })))
     }
 
     fn range_number(&mut self, e: &'p Expr, whole: bool) -> Outcome<f64> {
@@ -267,38 +278,5 @@ impl<'p> Evaluator<'p> {
             ),
         };
         Err(self.fail(said))
-    }
-}
-
-/// How many elements a range has: those start + i·step before `end`, or up to it where it is inclusive.
-/// Start, end and step as written are each off by half a unit in their last place, and so is every operation on them: a
-/// quotient that near to a whole number counts as whole, so that `0..=0.3 step 0.1` reaches 0.3.
-fn range_len(start: f64, end: f64, step: f64, inclusive: bool) -> usize {
-    let steps = (end - start) / step;
-    let near = gamma(4) * (start.abs() + end.abs()).max((end - start).abs()) / step.abs();
-    let whole = steps.round();
-    let n = match ((steps - whole).abs() <= near, inclusive) {
-        (true, true) => whole + 1.0,
-        (true, false) => whole,
-        (false, true) => steps.floor() + 1.0,
-        (false, false) => steps.ceil(),
-    };
-    n.max(0.0) as usize
-}
-
-#[cfg(test)]
-mod tests {
-    use super::range_len;
-
-    #[test]
-    fn ranges_end_where_they_are_written_to_end() {
-        assert_eq!(range_len(0.0, 12.0, 1.0, false), 12);
-        assert_eq!(range_len(0.0, 12.0, 1.0, true), 13);
-        assert_eq!(range_len(0.0, 0.3, 0.1, true), 4);
-        assert_eq!(range_len(0.0, 0.3, 0.1, false), 3);
-        assert_eq!(range_len(0.0, 1.0, 0.3, true), 4);
-        assert_eq!(range_len(5.0, 0.0, -1.0, false), 5);
-        assert_eq!(range_len(5.0, 0.0, 1.0, false), 0);
-        assert_eq!(range_len(3.0, 3.0, 1.0, true), 1);
     }
 }

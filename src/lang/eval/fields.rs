@@ -125,11 +125,15 @@ pub fn components(value: &Value) -> Vec<f64> {
 /// One to four components by their letters.
 pub fn swizzle(value: &Value, name: &str) -> Option<Value> {
     let components = components(value);
-    if components.is_empty() || name.chars().count() > 4 {
-        return None;
-    }
-    let picked = |letters: &str| -> Option<Vec<f64>> {
-        name.chars().map(|c| letters.find(c).and_then(|i| components.get(i).copied())).collect()
+    let picked: Vec<f64> = letters(name, components.len())?.into_iter().map(|i| components[i]).collect();
+    Some(vector(&picked))
+}
+
+/// The places that one to four letters name in a vector of `n` components.
+pub fn letters(name: &str, n: usize) -> Option<Vec<usize>> {
+    let of = |letters: &str| -> Option<Vec<usize>> {
+        name.chars().map(|c| letters.find(c).filter(|i| *i < n)).collect()
     };
-    LETTERS.iter().find_map(|letters| picked(letters)).map(|picked| vector(&picked))
+    let picked = LETTERS.iter().find_map(|letters| of(letters))?;
+    (1..=4).contains(&picked.len()).then_some(picked)
 }

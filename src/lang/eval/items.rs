@@ -8,7 +8,7 @@ use crate::lang::resolve::program::{
     Access, Body, Capture, Expr, For, FunctionId, Functions, If, Item, ItemKind, Property, UnitId, While,
 };
 use crate::lang::table::{Context, Outcome, Reported};
-use crate::lang::value::{Given, RangeValue, Value};
+use crate::lang::value::{Given, Value};
 use crate::scene::{Node, Object, Shape};
 use std::rc::Rc;
 use std::sync::Arc;
@@ -91,7 +91,18 @@ impl<'p> Evaluator<'p> {
     }
 
     fn assign(&mut self, access: Access, value: &'p Expr) -> Outcome<()> {
-        let value = self.expr(value);
+        let value = match self.number(value) {
+            Some(x) => {
+                if let Access::Local(_) | Access::Global(_) = access
+                    && let Slot::Value(Value::Number(old)) = self.slot(access)
+                {
+                    *old = x;
+                    return Ok(());
+                }
+                Ok(Value::Number(x))
+            }
+            None => self.spilled(),
+        };
         let outcome = value.as_ref().map(|_| ()).map_err(|e| *e);
         let value = value.map_or(Slot::Poison, Slot::Value);
         match access {
@@ -348,13 +359,5 @@ impl<'p> Evaluator<'p> {
             _ => "an item that is an expression places its value; to keep a value, write `let name = …`",
         };
         self.fail(said.hint(hint))
-    }
-}
-
-impl RangeValue {
-    /// Element `i`, computed from its index.
-    #[inline]
-    pub fn element(&self, i: usize) -> f64 {
-        self.start + i as f64 * self.step
     }
 }

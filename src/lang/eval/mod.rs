@@ -12,14 +12,18 @@ mod expressions;
 mod fields;
 mod guards;
 mod items;
+mod numbers;
 pub mod operators;
 mod report;
 pub mod slots;
 
+pub(super) use equal::equal;
+pub(super) use fields::{components, letters, place, swizzle};
+
 use super::limits::Limits;
 use super::resolve::load::Files;
 use super::resolve::program::{FunctionId, Program, UnitId};
-use super::table::Outcome;
+use super::table::{Outcome, Reported};
 use super::value::{Given, Value};
 use crate::diag::{Sink, Span};
 use crate::scene::assets::Loader;
@@ -139,6 +143,8 @@ struct Evaluator<'p> {
     units_done: Vec<bool>,
     calls: Vec<Call>,
     returned: Option<Outcome>,
+    /// A value that the fast path of numbers could not carry.
+    spilled: Outcome,
     top: Top,
     guards: Guards,
     sink: &'p mut Sink,
@@ -159,6 +165,7 @@ impl<'p> Evaluator<'p> {
             units_done: vec![false; run.program.units.len()],
             calls: Vec::new(),
             returned: None,
+            spilled: Err(Reported),
             top: Top::default(),
             guards: Guards::new(&run.limits, run.stack),
             sink,

@@ -176,6 +176,19 @@ pub fn negate(a: &Value, span: Span) -> Result<Value, Diagnostic> {
     }
 }
 
+/// `a op b` on numbers.
+#[inline]
+pub fn compare(op: Comparison, a: f64, b: f64) -> bool {
+    match op {
+        Comparison::Equal => a == b,
+        Comparison::NotEqual => a != b,
+        Comparison::Less => a < b,
+        Comparison::LessEqual => a <= b,
+        Comparison::Greater => a > b,
+        Comparison::GreaterEqual => a >= b,
+    }
+}
+
 /// `a < b` and the like, on numbers; texts are ordered by their characters.
 pub fn order(op: Comparison, a: &Value, b: &Value, span: Span) -> Result<bool, Diagnostic> {
     let ordering = match (a, b) {
