@@ -13,12 +13,9 @@ pub mod display;
 pub mod eval;
 pub mod kinds;
 pub mod limits;
-<<<<<<< HEAD
 #[cfg(test)]
 mod mock;
-=======
 mod range;
->>>>>>> 53c43ff (Compile functions of the scene to tapes, and let numbers travel in registers)
 pub mod resolve;
 pub mod table;
 pub mod value;

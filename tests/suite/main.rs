@@ -3,6 +3,7 @@
 mod command;
 mod diagnostics;
 mod intersection;
+mod language;
 mod layers;
 mod meshes;
 mod pictures;
