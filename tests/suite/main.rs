@@ -10,4 +10,5 @@ mod pictures;
 mod radiometry;
 mod run;
 mod stage;
+mod syntax;
 mod textures;

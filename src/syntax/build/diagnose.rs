@@ -34,7 +34,14 @@ impl Said {
     }
 
     pub fn at(span: (usize, usize), message: impl Into<String>) -> Said {
-        Said { code: Code::Syntax, span, message: message.into(), label: String::new(), also: None, hint: None }
+        Said {
+            code: Code::Syntax,
+            span,
+            message: message.into(),
+            label: String::new(),
+            also: None,
+            hint: None,
+        }
     }
 
     pub fn hint(self, hint: impl Into<String>) -> Said {
@@ -79,7 +86,12 @@ pub(super) fn item(
     {
         return fault;
     }
-    Fault { start: item, end: extent(text, &head, &around, end), defines: None, said: general(text, &head, &around) }
+    Fault {
+        start: item,
+        end: extent(text, &head, &around, end),
+        defines: None,
+        said: general(text, &head, &around),
+    }
 }
 
 /// The fault of a text that should be one expression.
@@ -88,7 +100,9 @@ pub(super) fn expression(text: &str, place: usize) -> Fault {
     let around = Around::new(text, 0, place, text.len());
     let said = match around.at {
         _ if text.trim().is_empty() => Said::at((0, text.len()), "there is no expression here"),
-        Some(at) if around.before.is_none() => Said::new(&at, format!("an expression cannot begin with {}", name_of(&at))),
+        Some(at) if around.before.is_none() => {
+            Said::new(&at, format!("an expression cannot begin with {}", name_of(&at)))
+        }
         _ => general(text, &first, &around),
     };
     Fault { start: 0, end: text.len(), defines: None, said }
@@ -117,7 +131,8 @@ pub(super) struct Around<'t> {
 
 impl<'t> Around<'t> {
     fn new(text: &'t str, start: usize, place: usize, end: usize) -> Self {
-        let mut around = Around { before: None, at: None, inside: None, vector: None, choice: None, count: 0 };
+        let mut around =
+            Around { before: None, at: None, inside: None, vector: None, choice: None, count: 0 };
         around.read(text, start, place, end);
         around.step_back(text, start, end);
         around
@@ -128,14 +143,36 @@ impl<'t> Around<'t> {
         let mut choices: Vec<Piece<'t>> = Vec::new();
         for piece in Pieces::new(text, start, end) {
             if piece.start < place && place < piece.end && piece.sort == Sort::Group {
-                *self = Around { before: None, at: None, inside: Some(piece), vector: None, choice: None, count: 0 };
+                *self = Around {
+                    before: None,
+                    at: None,
+                    inside: Some(piece),
+                    vector: None,
+                    choice: None,
+                    count: 0,
+                };
                 return self.read(text, piece.start + 1, place, piece.end - 1);
             }
-            if piece.start < place && place < piece.end && piece.sort == Sort::Text
+            if piece.start < place
+                && place < piece.end
+                && piece.sort == Sort::Text
                 && let Some((open, close)) = hole(&piece, place)
             {
-                let inside = Piece { sort: Sort::Group, start: open, end: close + 1, text: &text[open..=close], ..piece };
-                *self = Around { before: None, at: None, inside: Some(inside), vector: None, choice: None, count: 0 };
+                let inside = Piece {
+                    sort: Sort::Group,
+                    start: open,
+                    end: close + 1,
+                    text: &text[open..=close],
+                    ..piece
+                };
+                *self = Around {
+                    before: None,
+                    at: None,
+                    inside: Some(inside),
+                    vector: None,
+                    choice: None,
+                    count: 0,
+                };
                 return self.read(text, open + 1, place, close);
             }
             if piece.end > place {
@@ -143,7 +180,10 @@ impl<'t> Around<'t> {
                 break;
             }
             match piece.text {
-                "<" if self.before.is_none_or(|b| !b.ends_value() || self.count == 1 && b.end < piece.start) => {
+                "<" if self
+                    .before
+                    .is_none_or(|b| !b.ends_value() || self.count == 1 && b.end < piece.start) =>
+                {
                     vectors.push(piece);
                 }
                 ">" => {
@@ -164,7 +204,9 @@ impl<'t> Around<'t> {
 
     /// Reading may have looked past a word that begins the next item; the fault is before that word.
     fn step_back(&mut self, text: &'t str, start: usize, end: usize) {
-        let Some(word) = self.before.filter(|b| b.sort == Sort::Word && (b.first || is_kind(b.text))) else { return };
+        let Some(word) = self.before.filter(|b| b.sort == Sort::Word && (b.first || is_kind(b.text))) else {
+            return;
+        };
         let from = self.inside.map_or(start, |group| group.start + 1);
         let mut earlier = None;
         for piece in Pieces::new(text, from, end).take_while(|p| p.start < word.start) {
@@ -203,10 +245,14 @@ fn between_items(text: &str, head: &Piece<'_>, before: Option<(usize, usize)>, e
     let said = match (head.text, head.sort) {
         (",", _) if previous.is_some_and(|p| p.text == "<" || p.sort == Sort::Number) => {
             let start = previous.map_or(head.start, |p| p.start);
-            let around = Around { before: None, at: Some(*head), inside: None, vector: None, choice: None, count: 0 };
+            let around =
+                Around { before: None, at: Some(*head), inside: None, vector: None, choice: None, count: 0 };
             let end = extent(text, head, &around, end);
-            let said = Said::at((start, trimmed(text, start, end)), "values stand here without the name of a property")
-                .hint("every value follows its property's name, as in `center <0, 0, 0>  radius 1`");
+            let said = Said::at(
+                (start, trimmed(text, start, end)),
+                "values stand here without the name of a property",
+            )
+            .hint("every value follows its property's name, as in `center <0, 0, 0>  radius 1`");
             return Some(Fault { start, end, defines: None, said });
         }
         (",", _) => Said::new(head, "a `,` stands between two items")
@@ -220,8 +266,9 @@ fn between_items(text: &str, head: &Piece<'_>, before: Option<(usize, usize)>, e
         (sign, Sort::Sign) if previous.is_some() => {
             return Some(after_value(text, sign, head, before, end));
         }
-        (_, Sort::Sign) => Said::new(head, format!("an item cannot begin with `{}`", head.text))
-            .hint("an item is a property, a block, `let`, `fn`, `if`, `for`, `import` or the name of what to place"),
+        (_, Sort::Sign) => Said::new(head, format!("an item cannot begin with `{}`", head.text)).hint(
+            "an item is a property, a block, `let`, `fn`, `if`, `for`, `import` or the name of what to place",
+        ),
         _ => return None,
     };
     let stop = if head.sort == Sort::Sign { head.end } else { extent_from(text, head, end) };
@@ -235,7 +282,10 @@ fn assignment(text: &str, equals: &Piece<'_>, before: Option<(usize, usize)>, en
     let said = Said::new(equals, "an assignment has one name before its `=`");
     let (said, defines) = match words.as_slice() {
         [.., name] if name.sort == Sort::Word => (
-            said.hint(format!("to define a name, write `let {} = …`; a property is followed by its value alone", name.text)),
+            said.hint(format!(
+                "to define a name, write `let {} = …`; a property is followed by its value alone",
+                name.text
+            )),
             Some((name.start, name.end)),
         ),
         _ => (said.hint("to compare, write `==`; to define a function, write `fn name(a) = …`"), None),
@@ -244,7 +294,13 @@ fn assignment(text: &str, equals: &Piece<'_>, before: Option<(usize, usize)>, en
 }
 
 /// An operator behind a sound item: what follows the operator is at fault, and the item with it.
-fn after_value(text: &str, sign: &str, head: &Piece<'_>, before: Option<(usize, usize)>, end: usize) -> Fault {
+fn after_value(
+    text: &str,
+    sign: &str,
+    head: &Piece<'_>,
+    before: Option<(usize, usize)>,
+    end: usize,
+) -> Fault {
     let start = before.map_or(head.start, |(start, _)| start);
     let next = Pieces::new(text, head.end, end).next();
     let said = match (sign, next) {
@@ -262,18 +318,28 @@ fn after_value(text: &str, sign: &str, head: &Piece<'_>, before: Option<(usize, 
 
 /// The fault by what stands before and at the place.
 pub(super) fn general(text: &str, head: &Piece<'_>, around: &Around<'_>) -> Said {
-    if let Some(number) = [around.before, around.at].into_iter().flatten().find(|p| p.sort == Sort::Number && p.text.ends_with('.')) {
+    if let Some(number) = [around.before, around.at]
+        .into_iter()
+        .flatten()
+        .find(|p| p.sort == Sort::Number && p.text.ends_with('.'))
+    {
         let digits = number.text.trim_end_matches('.');
-        return Said { code: Code::BadNumber, ..Said::new(&number, format!("`{}` is not a number", number.text)) }
-            .hint(format!("write `{digits}.0` or `{digits}`"));
+        return Said {
+            code: Code::BadNumber,
+            ..Said::new(&number, format!("`{}` is not a number", number.text))
+        }
+        .hint(format!("write `{digits}.0` or `{digits}`"));
     }
     if let Some(vector) = around.vector {
         return in_vector(text, &vector, around);
     }
     if let Some(sign) = around.before.filter(|b| matches!(b.text, "&" | "|")) {
-        return Said::new(&sign, format!("`{}` is no operator", sign.text)).hint(format!("write `{0}{0}`", sign.text));
+        return Said::new(&sign, format!("`{}` is no operator", sign.text))
+            .hint(format!("write `{0}{0}`", sign.text));
     }
-    if let Some(equals) = around.before.filter(|b| b.text == "=" && (around.inside.is_some() || around.count > 3)) {
+    if let Some(equals) =
+        around.before.filter(|b| b.text == "=" && (around.inside.is_some() || around.count > 3))
+    {
         return stray_equals(&equals);
     }
     if let Some(at) = around.at.filter(|at| at.sort == Sort::Strange) {
@@ -284,7 +350,9 @@ pub(super) fn general(text: &str, head: &Piece<'_>, around: &Around<'_>) -> Said
     }
     let closing = closing(around);
     match (around.before, around.at) {
-        (None, Some(at)) => Said::new(&opening(&at), format!("{} cannot stand here", capital_free(&name_of(&at)))),
+        (None, Some(at)) => {
+            Said::new(&opening(&at), format!("{} cannot stand here", capital_free(&name_of(&at))))
+        }
         (None, None) => Said::new(head, "something is missing here"),
         (Some(before), at) if !before.ends_value() => wants_value(&before, at, &closing),
         (Some(before), at) if around.count == 1 && before.start == head.start && around.inside.is_none() => {
@@ -296,19 +364,22 @@ pub(super) fn general(text: &str, head: &Piece<'_>, around: &Around<'_>) -> Said
 }
 
 fn stray_equals(at: &Piece<'_>) -> Said {
-    Said::new(at, "a `=` cannot stand in an expression").hint("to compare, write `==`; to name an argument, `name: value`")
+    Said::new(at, "a `=` cannot stand in an expression")
+        .hint("to compare, write `==`; to name an argument, `name: value`")
 }
 
 /// After an operator, a comma and the like.
 fn wants_value(before: &Piece<'_>, at: Option<Piece<'_>>, closing: &str) -> Said {
     let said = format!("expected a value after `{}`", before.text);
     if before.text == "." {
-        return Said::new(before, "a `.` stands tight between a value and the name of its part").hint("write `v.x`, `path.length`");
+        return Said::new(before, "a `.` stands tight between a value and the name of its part")
+            .hint("write `v.x`, `path.length`");
     }
     match at {
         Some(at) if !at.first => {
             let found = Said::new(&opening(&at), format!("{said}, found {}", name_of(&at)));
-            if at.text == before.text && matches!(at.text, "+" | "*") || (before.text, at.text) == ("=", "=") {
+            if at.text == before.text && matches!(at.text, "+" | "*") || (before.text, at.text) == ("=", "=")
+            {
                 return found.hint(format!("`{}{}` is no operator", before.text, at.text));
             }
             found
@@ -331,7 +402,8 @@ fn property_wants_value(text: &str, name: &Piece<'_>, at: Option<Piece<'_>>) -> 
         };
     }
     if at.text == "<" && !at.apart {
-        return Said::new(&at, format!("`{}<` compares", name.text)).hint(format!("leave a blank for a vector: `{} <…>`", name.text));
+        return Said::new(&at, format!("`{}<` compares", name.text))
+            .hint(format!("leave a blank for a vector: `{} <…>`", name.text));
     }
     if text[name.end..at.start].contains('\n') {
         return Said::new(name, said).hint("a property's first value begins on the property's line");
@@ -349,10 +421,14 @@ fn in_vector(text: &str, vector: &Piece<'_>, around: &Around<'_>) -> Said {
             let said = format!("expected a component after `{after}`, found {}", name_of(&at));
             Said { also: (after != "<").then_some(open), ..Said::new(&opening(&at), said) }
         }
-        Some(at) if !at.first && closes_later(text, &at) => {
-            Said { also: Some(open), ..Said::new(&opening(&at), format!("expected `,` or `>` before {}", name_of(&at))) }
-        }
-        _ => Said { code: Code::Unclosed, ..Said::new(vector, "this vector is not closed").hint("end it with `>`") },
+        Some(at) if !at.first && closes_later(text, &at) => Said {
+            also: Some(open),
+            ..Said::new(&opening(&at), format!("expected `,` or `>` before {}", name_of(&at)))
+        },
+        _ => Said {
+            code: Code::Unclosed,
+            ..Said::new(vector, "this vector is not closed").hint("end it with `>`")
+        },
     }
 }
 
@@ -367,7 +443,10 @@ fn unexpected(before: &Piece<'_>, at: &Piece<'_>, around: &Around<'_>, closing: 
     let found = name_of(at);
     match at.text {
         "and" | "or" | "not" => return spelled(at),
-        "&" | "|" => return Said::new(at, format!("`{}` is no operator", at.text)).hint(format!("write `{0}{0}`", at.text)),
+        "&" | "|" => {
+            return Said::new(at, format!("`{}` is no operator", at.text))
+                .hint(format!("write `{0}{0}`", at.text));
+        }
         "=" => {
             return stray_equals(at);
         }
@@ -377,11 +456,13 @@ fn unexpected(before: &Piece<'_>, at: &Piece<'_>, around: &Around<'_>, closing: 
     match brackets {
         Some("(" | "[") => {
             let said = Said::new(&opening(at), format!("expected `,` or {closing} before {found}"));
-            let same = before.sort == Sort::Word && at.sort == Sort::Group && at.text.starts_with('(') && at.apart;
+            let same =
+                before.sort == Sort::Word && at.sort == Sort::Group && at.text.starts_with('(') && at.apart;
             if same { said.hint(format!("a call is written tight: `{}(…)`", before.text)) } else { said }
         }
         _ if at.text.starts_with('{') => unknown_block(before, at),
-        _ => Said::new(&opening(at), format!("{} cannot stand here", capital_free(&found))).hint(format!("expected an operator, or the end of the item, after `{}`", shorten(before.text))),
+        _ => Said::new(&opening(at), format!("{} cannot stand here", capital_free(&found)))
+            .hint(format!("expected an operator, or the end of the item, after `{}`", shorten(before.text))),
     }
 }
 
@@ -389,7 +470,10 @@ fn unknown_block(before: &Piece<'_>, at: &Piece<'_>) -> Said {
     if before.sort != Sort::Word {
         return Said::new(&opening(at), "a block needs a kind before its `{`");
     }
-    let said = Said { code: Code::UnknownKind, ..Said::new(before, format!("no block is of the kind `{}`", before.text)) };
+    let said = Said {
+        code: Code::UnknownKind,
+        ..Said::new(before, format!("no block is of the kind `{}`", before.text))
+    };
     match near_kind(before.text) {
         Some(near) => said.hint(format!("did you mean `{near}`?")),
         None => said,
@@ -409,11 +493,14 @@ pub(super) fn spelled(at: &Piece<'_>) -> Said {
 fn strange(at: &Piece<'_>) -> Said {
     let said = Said::new(at, format!("the character `{}` has no meaning here", at.text));
     match at.text {
-        "“" | "”" | "„" | "‘" | "’" | "«" | "»" => said.hint("texts stand between straight quotation marks, `\"…\"`"),
+        "“" | "”" | "„" | "‘" | "’" | "«" | "»" => {
+            said.hint("texts stand between straight quotation marks, `\"…\"`")
+        }
         "−" | "–" | "—" => said.hint("a minus is written `-`"),
         "×" | "·" => said.hint("a product is written `*`"),
         "⟨" | "⟩" => said.hint("a vector stands between `<` and `>`"),
-        "\u{a0}" => Said { message: "a no-break space has no meaning here".into(), ..said }.hint("write a plain blank"),
+        "\u{a0}" => Said { message: "a no-break space has no meaning here".into(), ..said }
+            .hint("write a plain blank"),
         _ => said,
     }
 }
@@ -485,7 +572,8 @@ fn reach(text: &str, start: usize, place: usize, needs_body: bool, end: usize) -
             Some(_) if piece.sort == Sort::Struck => true,
             Some(before) => {
                 piece.start >= place
-                    && (piece.text == ";" || begins_item(&piece, &before, place, pieces.peek()) && (body || piece.first))
+                    && (piece.text == ";"
+                        || begins_item(&piece, &before, place, pieces.peek()) && (body || piece.first))
             }
         };
         if stop {
@@ -511,5 +599,10 @@ fn begins_item(piece: &Piece<'_>, before: &Piece<'_>, place: usize, next: Option
         return true;
     }
     let opens_unknown = next.is_some_and(|n| n.text.starts_with('{')) && !is_kind(piece.text);
+    let has_value =
+        next.is_some_and(|n| !n.first && matches!(n.sort, Sort::Number | Sort::Text | Sort::Word));
+    if before.start == place && before.sort == Sort::Sign && has_value {
+        return true;
+    }
     before.ends_value() && (piece.first || !opens_unknown)
 }

@@ -3,7 +3,7 @@
 
 /// What a piece of text looks like.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Sort {
+pub(in crate::syntax) enum Sort {
     Word,
     Number,
     Text,
@@ -21,7 +21,7 @@ pub(super) enum Sort {
 
 /// A piece of text.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Piece<'t> {
+pub(in crate::syntax) struct Piece<'t> {
     pub sort: Sort,
     pub start: usize,
     pub end: usize,
@@ -44,7 +44,7 @@ impl Piece<'_> {
 }
 
 /// Reads pieces from a place on; groups as one piece.
-pub(super) struct Pieces<'t> {
+pub(in crate::syntax) struct Pieces<'t> {
     text: &'t str,
     at: usize,
     end: usize,
@@ -72,7 +72,9 @@ impl<'t> Pieces<'t> {
                     self.at += 1;
                 }
                 [b' ' | b'\t' | b'\r', ..] => self.at += 1,
-                [b'/', b'/', ..] => self.at += self.rest().iter().position(|b| *b == b'\n').unwrap_or(self.rest().len()),
+                [b'/', b'/', ..] => {
+                    self.at += self.rest().iter().position(|b| *b == b'\n').unwrap_or(self.rest().len())
+                }
                 [b'/', b'*', ..] => self.at += block_comment(self.rest()),
                 _ => return self.at > start,
             }
@@ -126,7 +128,9 @@ fn number(text: &str) -> usize {
     while let Some(b) = bytes.get(i) {
         let goes_on = b.is_ascii_alphanumeric()
             || *b == b'_'
-            || *b == b'.' && bytes.get(i + 1) != Some(&b'.') && bytes.get(i + 1).is_none_or(|b| !b.is_ascii_alphabetic())
+            || *b == b'.'
+                && bytes.get(i + 1) != Some(&b'.')
+                && bytes.get(i + 1).is_none_or(|b| !b.is_ascii_alphabetic())
             || matches!(b, b'+' | b'-')
                 && matches!(bytes[i - 1], b'e' | b'E')
                 && bytes.get(i + 1).is_some_and(u8::is_ascii_digit);

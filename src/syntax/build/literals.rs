@@ -22,7 +22,8 @@ impl<'a> Builder<'a> {
         let mut len = 0;
         for part in text[1..text.len() - 1].split(',') {
             let part = part.trim_ascii();
-            let plain = !part.starts_with('+') && part.bytes().any(|b| b.is_ascii_digit()) && !part.ends_with('.');
+            let plain =
+                !part.starts_with('+') && part.bytes().any(|b| b.is_ascii_digit()) && !part.ends_with('.');
             let value = if plain { part.parse::<f64>().ok().filter(|v| v.is_finite()) } else { None };
             let (Some(value), Some(component)) = (value, v.get_mut(len)) else {
                 return self.vector_again(token, span);
@@ -66,7 +67,10 @@ impl<'a> Builder<'a> {
             }
             if let Some(gap) = number.find(|c: char| c.is_ascii_whitespace()) {
                 let next_at = at + gap + (number[gap..].len() - number[gap..].trim_ascii_start().len());
-                let next = number[next_at - at..].split(|c: char| c.is_ascii_whitespace()).next().unwrap_or_default();
+                let next = number[next_at - at..]
+                    .split(|c: char| c.is_ascii_whitespace())
+                    .next()
+                    .unwrap_or_default();
                 let said = format!("expected `,` or `>` before `{next}`");
                 return Diagnostic::new(Code::Syntax, self.span_of(next_at, next_at + next.len()), said)
                     .hint("the components of a vector have a comma between each two");
@@ -217,7 +221,11 @@ fn malformed(digits: &str, span: Span) -> Diagnostic {
     } else if digits.starts_with("0x") || digits.starts_with("0X") {
         found.hint("numbers are decimal; a colour is written `#cc3311`")
     } else if digits[..end].parse::<f64>().is_ok() {
-        found.hint(format!("a product is written `{} * {}`; numbers have no units", &digits[..end], &digits[end..]))
+        found.hint(format!(
+            "a product is written `{} * {}`; numbers have no units",
+            &digits[..end],
+            &digits[end..]
+        ))
     } else {
         found.hint("a number has one point at most, and digits on both sides of it")
     }

@@ -16,9 +16,13 @@ mod lexer;
 mod literals;
 mod operators;
 mod outline;
+mod places;
 mod recover;
 mod repair;
 mod statements;
+
+pub(super) use lexer::{Piece, Pieces, Sort};
+pub(super) use places::{ItemPlace, ItemSort, Places, places};
 
 /// The block kinds, as the grammar reserves them. A test holds this equal to the grammar and to the table of kinds.
 pub const KINDS: &[&str] = &[

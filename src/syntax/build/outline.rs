@@ -158,8 +158,9 @@ impl<'t> Events<'t> {
     fn comment(&mut self, at: usize) -> Option<Event> {
         match self.bytes.get(at + 1)? {
             b'/' => {
-                let rest = &self.bytes[at..];
-                self.at = at + rest.iter().position(|&b| b == b'\n').unwrap_or(rest.len());
+                while self.bytes.get(self.at).is_some_and(|b| *b >= b' ' || b"\t\r".contains(b)) {
+                    self.at += 1;
+                }
                 None
             }
             b'*' => self.block_comment(at),
@@ -187,6 +188,11 @@ impl<'t> Events<'t> {
                 Some(b"*/") => {
                     depth -= 1;
                     self.at += 2;
+                }
+                Some([0..b' ', _]) if !b"\t\r\n".contains(&self.bytes[self.at]) => {
+                    let at = self.at;
+                    self.at = self.bytes.len();
+                    return Some(Event::Control { at });
                 }
                 Some(_) => self.at += 1,
             }

@@ -178,7 +178,10 @@ impl Mender<'_> {
         let word = before.rsplit(|c: char| !(c.is_alphanumeric() || c == '_')).next().unwrap_or_default();
         let foreign = !is_reserved(word) && near_kind(word).is_none() && close > open + 1;
         let heads_line = before[..before.len() - word.len()].trim_end_matches([' ', '\t']);
-        if foreign && !word.is_empty() && (heads_line.is_empty() || heads_line.ends_with(['\n', '{', '}', ';'])) {
+        if foreign
+            && !word.is_empty()
+            && (heads_line.is_empty() || heads_line.ends_with(['\n', '{', '}', ';']))
+        {
             self.strike(open + 1, close, None);
         } else {
             self.region(open + 1, close);
@@ -187,15 +190,27 @@ impl Mender<'_> {
 
     /// Where reading stopped at the very beginning of an item, the item before it may have broken off there: then that is
     /// the item at fault, and the place is where it broke off.
-    fn further(&self, item: usize, place: usize, before: Option<(usize, usize)>, end: usize) -> (usize, usize, Option<(usize, usize)>) {
+    fn further(
+        &self,
+        item: usize,
+        place: usize,
+        before: Option<(usize, usize)>,
+        end: usize,
+    ) -> (usize, usize, Option<(usize, usize)>) {
         let unchanged = (item, place, before);
-        let Some((start, _)) = before.filter(|_| place == item) else { return unchanged };
+        let head = Pieces::new(&self.work, item, end).next();
+        let at_once = place == item || head.is_some_and(|p| p.sort == Sort::Sign && place <= p.end);
+        let Some((start, _)) = before.filter(|_| at_once) else { return unchanged };
         let Err(error) = Grammar::parse(Rule::file, &self.work[start..end]) else { return unchanged };
         let broke_off = floor(&self.work, start + Failure::of(error).at);
         let comma_before_item = self.work[item..].starts_with(',')
             && Pieces::new(&self.work, item + 1, end).next().is_some_and(|p| p.sort == Sort::Word);
         let point = self.work[item..].starts_with('.');
-        if !point && broke_off <= item + 1 || comma_before_item { unchanged } else { (start, broke_off, None) }
+        if !point && broke_off <= item + 1 || comma_before_item {
+            unchanged
+        } else {
+            (start, broke_off, None)
+        }
     }
 
     /// Where the next item begins, past blanks, comments and semicolons.

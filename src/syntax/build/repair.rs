@@ -20,11 +20,20 @@ const MOST_STRAY: usize = 64;
 /// A change to the text. Where two stand at one place, their order is that of their making.
 #[derive(Clone, Copy, Debug)]
 enum Edit {
-    Insert { at: usize, byte: u8 },
+    Insert {
+        at: usize,
+        byte: u8,
+    },
     /// Overwrites with blanks.
-    Blank { at: usize, len: usize },
+    Blank {
+        at: usize,
+        len: usize,
+    },
     /// Overwrites with the byte that the grammar takes for a bad item.
-    Strike { at: usize, len: usize },
+    Strike {
+        at: usize,
+        len: usize,
+    },
 }
 
 impl Edit {
@@ -38,10 +47,20 @@ impl Edit {
 /// A bracket or the beginning of a line, as the repair sees it.
 #[derive(Clone, Copy, Debug)]
 enum Mark {
-    Open { at: usize, byte: u8, hole: bool },
-    Close { at: usize, byte: u8 },
+    Open {
+        at: usize,
+        byte: u8,
+        hole: bool,
+    },
+    Close {
+        at: usize,
+        byte: u8,
+    },
     /// The first byte of a line that is not blank.
-    Line { at: usize, indent: usize },
+    Line {
+        at: usize,
+        indent: usize,
+    },
 }
 
 /// Makes the brackets of a text close.
@@ -77,7 +96,9 @@ impl Repair<'_> {
                 Event::CloseHole { at } => marks.push(Mark::Close { at, byte: b'}' }),
                 Event::LineEnd { at } => marks.extend(self.line(at + 1)),
                 Event::OpenText { open, at, hole } => {
-                    while marks.last().is_some_and(|m| matches!(m, Mark::Open { at, .. } | Mark::Close { at, .. } if *at > open)) {
+                    while marks.last().is_some_and(
+                        |m| matches!(m, Mark::Open { at, .. } | Mark::Close { at, .. } if *at > open),
+                    ) {
                         marks.pop();
                     }
                     let go_on = self.text(open, at, hole);
@@ -103,9 +124,13 @@ impl Repair<'_> {
     fn text(&mut self, open: usize, line_end: usize, hole: Option<usize>) -> usize {
         if let (Some(hole), Some(close)) = (hole, plain_close(self.text, open, line_end)) {
             self.found.push(
-                Diagnostic::new(Code::BadString, self.span(hole, hole + 1), "this `{` in a text is not closed")
-                    .label("an interpolation begins here")
-                    .hint("for the brace itself write `\\{`"),
+                Diagnostic::new(
+                    Code::BadString,
+                    self.span(hole, hole + 1),
+                    "this `{` in a text is not closed",
+                )
+                .label("an interpolation begins here")
+                .hint("for the brace itself write `\\{`"),
             );
             for (i, _) in self.text[open..close].match_indices('{') {
                 self.edits.push(Edit::Blank { at: open + i, len: 1 });
@@ -136,7 +161,11 @@ impl Repair<'_> {
     fn comment(&mut self, open: usize, depth: usize) {
         self.found.push(
             Diagnostic::new(Code::Unclosed, self.span(open, open + 2), "this comment is not closed")
-                .label(if depth > 1 { format!("{depth} levels of comment are open at the end") } else { String::new() })
+                .label(if depth > 1 {
+                    format!("{depth} levels of comment are open at the end")
+                } else {
+                    String::new()
+                })
                 .hint("end it with `*/`; comments nest, so each `/*` needs its own"),
         );
         self.edits.push(Edit::Blank { at: open, len: self.text.len() - open });
@@ -164,8 +193,13 @@ impl Repair<'_> {
             self.found.push(too_deep(self.span(at, at + 1), limit));
             self.edits.retain(|edit| edit.at() < start || edit.at() >= end);
             self.edits.push(Edit::Strike { at: start, len: end - start });
-            self.found.retain(|d| d.span.is_none_or(|s| s.start as usize == at || (s.start as usize) < start || s.start as usize >= end));
-            let outside: Vec<Mark> = marks.iter().copied().filter(|m| !(start..end).contains(&m.at())).collect();
+            self.found.retain(|d| {
+                d.span.is_none_or(|s| {
+                    s.start as usize == at || (s.start as usize) < start || s.start as usize >= end
+                })
+            });
+            let outside: Vec<Mark> =
+                marks.iter().copied().filter(|m| !(start..end).contains(&m.at())).collect();
             return self.brackets(&outside, limit);
         }
         let guided = plain.first_left_open.map(|first| {
@@ -191,9 +225,17 @@ impl Repair<'_> {
     fn unclosed(&mut self, unclosed: &Unclosed) {
         let Unclosed { open, byte, hole, at } = *unclosed;
         let close = closer(byte) as char;
-        let said = if hole { "this interpolation is not closed".to_owned() } else { format!("this `{}` is not closed", byte as char) };
+        let said = if hole {
+            "this interpolation is not closed".to_owned()
+        } else {
+            format!("this `{}` is not closed", byte as char)
+        };
         let shown = self.text[at..].chars().next().map_or(at, |c| at + c.len_utf8());
-        let place = if at >= self.text.trim_end().len() { "the file ends without it".to_owned() } else { format!("a `{close}` was expected before this") };
+        let place = if at >= self.text.trim_end().len() {
+            "the file ends without it".to_owned()
+        } else {
+            format!("a `{close}` was expected before this")
+        };
         self.found.push(
             Diagnostic::new(Code::Unclosed, self.span(open, open + 1), said)
                 .also(self.span(at, shown), place)
@@ -340,7 +382,15 @@ impl Matching {
     }
 
     /// A closing bracket: takes its partner from the stack, and what stands open above it.
-    fn close_by(&mut self, open: &mut Vec<Waiting>, byte: u8, at: usize, text: &str, marks: &[Mark], mark: usize) {
+    fn close_by(
+        &mut self,
+        open: &mut Vec<Waiting>,
+        byte: u8,
+        at: usize,
+        text: &str,
+        marks: &[Mark],
+        mark: usize,
+    ) {
         let partner = open.iter().rposition(|w| closer(w.byte) == byte);
         let crosses_brace = partner.is_some_and(|p| {
             byte != b'}' && open[p..].iter().any(|w| w.byte == b'{' && text[w.at..at].contains('\n'))
@@ -396,9 +446,10 @@ impl Matching {
 fn likely_end(top: &Waiting, close: usize, text: &str, marks: &[Mark]) -> usize {
     let line_end = text[top.at..close].find('\n').map(|i| top.at + i);
     let Some(line_end) = line_end else {
-        let gap = text[top.at..close].match_indices("  ").map(|(i, _)| top.at + i).find(|&i| {
-            text[i..close].trim_start().starts_with(|c: char| c.is_alphabetic())
-        });
+        let gap = text[top.at..close]
+            .match_indices("  ")
+            .map(|(i, _)| top.at + i)
+            .find(|&i| text[i..close].trim_start().starts_with(|c: char| c.is_alphabetic()));
         return gap.unwrap_or(top.at + text[top.at..close].trim_end().len());
     };
     let next = marks.iter().find_map(|mark| match *mark {

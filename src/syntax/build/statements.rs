@@ -22,8 +22,10 @@ pub(super) fn statement<'t>(
         "for" => for_loop(head, rest),
         "if" | "while" => None,
         "import" => Some(import(head, rest)),
-        "else" => Some(Said::new(head, "this `else` follows no `if`")
-            .hint("an `else` stands behind the `}` of its `if`")),
+        "else" => Some(
+            Said::new(head, "this `else` follows no `if`")
+                .hint("an `else` stands behind the `}` of its `if`"),
+        ),
         "with" => Some(Said::new(head, "`with` follows no value").hint("write `value with { … }`")),
         "in" => Some(Said::new(head, "`in` stands outside a loop").hint("write `for i in 0..n { … }`")),
         _ => return None,
@@ -33,7 +35,12 @@ pub(super) fn statement<'t>(
     Some((said, None))
 }
 
-fn binding<'t>(text: &str, head: &Piece<'t>, rest: &[Piece<'t>], around: &Around<'t>) -> (Said, Option<Bytes>) {
+fn binding<'t>(
+    text: &str,
+    head: &Piece<'t>,
+    rest: &[Piece<'t>],
+    around: &Around<'t>,
+) -> (Said, Option<Bytes>) {
     let Some(name) = rest.first().filter(|p| p.sort == Sort::Word && !p.text.starts_with('#')) else {
         return (no_name(head, rest.first()), None);
     };
@@ -63,14 +70,22 @@ fn no_name(head: &Piece<'_>, found: Option<&Piece<'_>>) -> Said {
     }
 }
 
-fn function<'t>(text: &str, head: &Piece<'t>, rest: &[Piece<'t>], around: &Around<'t>) -> (Said, Option<Bytes>) {
+fn function<'t>(
+    text: &str,
+    head: &Piece<'t>,
+    rest: &[Piece<'t>],
+    around: &Around<'t>,
+) -> (Said, Option<Bytes>) {
     let Some(name) = rest.first().filter(|p| p.sort == Sort::Word && !p.text.starts_with('#')) else {
         return (no_name(head, rest.first()), None);
     };
     let defines = Some((name.start, name.end));
     let form = format!("write `fn {0}(a, b) = value` or `fn {0}(a, b) {{ … }}`", name.text);
     let Some(parameters) = rest.get(1).filter(|p| p.text.starts_with('(')) else {
-        return (Said::new(name, format!("expected parameters after `fn {}`", name.text)).hint(form), defines);
+        return (
+            Said::new(name, format!("expected parameters after `fn {}`", name.text)).hint(form),
+            defines,
+        );
     };
     let in_parameters = around.inside.is_some_and(|group| group.start == parameters.start);
     let has_body = rest.get(2).is_some_and(|p| p.text == "=" || p.text.starts_with('{'));
@@ -106,10 +121,15 @@ fn import(head: &Piece<'_>, rest: &[Piece<'_>]) -> Said {
         (Some(path), Some(word)) if path.sort == Sort::Text && word.text == "as" => {
             Said::new(word, "expected a name after `as`").hint(form)
         }
-        (Some(path), Some(found)) if path.sort == Sort::Text => Said::new(&opening(found), format!("{} cannot follow an import's path", name_of(found))).hint(form),
-        (Some(found), _) if !found.first => {
-            Said::new(&opening(found), format!("expected a path in quotation marks, found {}", name_of(found))).hint(form)
+        (Some(path), Some(found)) if path.sort == Sort::Text => {
+            Said::new(&opening(found), format!("{} cannot follow an import's path", name_of(found)))
+                .hint(form)
         }
+        (Some(found), _) if !found.first => Said::new(
+            &opening(found),
+            format!("expected a path in quotation marks, found {}", name_of(found)),
+        )
+        .hint(form),
         _ => Said::new(head, "expected a path in quotation marks after `import`").hint(form),
     }
 }
@@ -134,7 +154,9 @@ fn header<'t>(text: &str, head: &Piece<'t>, around: &Around<'t>) -> Option<Said>
     let said = format!("expected `{{` after the {what}");
     Some(match around.at {
         Some(at) if matches!(at.text, "and" | "or" | "not") => spelled(&at),
-        Some(at) if at.text == "=" => Said::new(&at, "a `=` cannot stand in a condition").hint("to compare, write `==`"),
+        Some(at) if at.text == "=" => {
+            Said::new(&at, "a `=` cannot stand in a condition").hint("to compare, write `==`")
+        }
         Some(at) if before.text == "else" => {
             Said::new(&opening(&at), format!("expected `{{` or `if` after `else`, found {}", name_of(&at)))
         }
@@ -147,14 +169,17 @@ fn header<'t>(text: &str, head: &Piece<'t>, around: &Around<'t>) -> Option<Said>
 /// POV-Ray's directives, which people bring along.
 pub(super) fn directive(text: &str, head: &Piece<'_>, end: usize) -> Option<Fault> {
     let word = head.text.strip_prefix('#')?;
-    let name = Pieces::new(text, head.end, end).next().filter(|p| p.sort == Sort::Word && !is_reserved(p.text));
+    let name =
+        Pieces::new(text, head.end, end).next().filter(|p| p.sort == Sort::Word && !is_reserved(p.text));
     let called = name.map_or("name", |p| p.text);
     let (hint, defines, to_end) = match word {
         "declare" | "local" => (format!("write `let {called} = …`"), true, false),
         "macro" => (format!("write `fn {called}(a, b) = …` or `fn {called}(a, b) {{ … }}`"), true, true),
         "for" => ("write `for i in 0..n { … }`".to_owned(), false, true),
         "while" => ("write `while condition { … }`".to_owned(), false, true),
-        "if" | "ifdef" | "ifndef" | "switch" => ("write `if condition { … } else { … }`".to_owned(), false, true),
+        "if" | "ifdef" | "ifndef" | "switch" => {
+            ("write `if condition { … } else { … }`".to_owned(), false, true)
+        }
         "else" | "elseif" | "end" | "case" | "range" | "break" => {
             ("what belongs together stands in braces, `{ … }`".to_owned(), false, false)
         }

@@ -1,0 +1,36 @@
+//! The canonical layout of a file: `ogee fmt`. Keeps every comment and the syntax tree; idempotent.
+//!
+//! Tokens are printed as they were written; only the blanks between them are the formatter's. Where the person broke a
+//! line between items or between the elements of a list, the break stays; blocks stay on one line where they were and
+//! where they fit; what is too long is broken at items and commas.
+
+mod layout;
+mod tree;
+
+use super::build::{ParseLimits, parse_file, places};
+use super::print::print;
+use crate::diag::{Diagnostic, Severity, SourceId};
+
+/// The widest line, in characters. Lines without a place to break may be wider.
+pub const WIDTH: usize = 100;
+
+/// The text in canonical layout, or what keeps it from being read. The source of the diagnostics' spans is `SourceId(0)`;
+/// [`format_source`] takes another.
+pub fn format(text: &str) -> Result<String, Vec<Diagnostic>> {
+    format_source(SourceId(0), text, ParseLimits::default())
+}
+
+/// The same, for a file of a source map.
+pub fn format_source(source: SourceId, text: &str, limits: ParseLimits) -> Result<String, Vec<Diagnostic>> {
+    let (tree, found) = parse_file(source, text, limits);
+    if found.iter().any(|d| d.severity == Severity::Error) {
+        return Err(found);
+    }
+    let Some(places) = places(text, limits) else { return Err(found) };
+    let laid_out = layout::layout(text, &places);
+    let (again, faults) = parse_file(source, &laid_out, limits);
+    let same = faults.is_empty() && print(&again) == print(&tree);
+    debug_assert!(same, "the layout changes the tree:\n{text}\n--- to\n{laid_out}");
+    // A scene is worth more than its layout: what would change it is left as it is.
+    Ok(if same { laid_out } else { text.to_owned() })
+}
