@@ -2,6 +2,7 @@
 //!
 //! Nothing here prints, or asks what the output is: [`Style`] says it.
 
+mod excerpt;
 mod human;
 mod json;
 mod short;
@@ -140,6 +141,7 @@ mod tests {
         let text = human(&[fault], &sources, Style::plain(80));
         assert!(text.len() < 5_000 && text.contains("long.scene:1:1000001"), "{} bytes", text.len());
         assert!(text.contains("and far away"), "{text}");
+        assert!(text.lines().all(|line| line.chars().count() <= 80), "{text}");
     }
 
     #[test]

@@ -8,7 +8,14 @@ use std::str::FromStr;
 
 /// Ogee: write a scene as text, get a picture.
 #[derive(Parser)]
-#[command(name = "ogee", version, about, arg_required_else_help = true, max_term_width = 100)]
+#[command(
+    name = "ogee",
+    version,
+    about,
+    arg_required_else_help = true,
+    args_override_self = true,
+    max_term_width = 100
+)]
 #[command(after_help = "`-` in place of a file is standard input or output. \
     Exit codes: 0 done, 1 the scene is at fault or a comparison failed, 2 the command line is, \
     3 the machine is (disk, memory, an unreadable place), 130 interrupted, with the picture so far saved.")]

@@ -1,21 +1,15 @@
-//! Diagnostics for people, drawn by miette from a report made by hand.
-//!
-//! miette's own sources are scanned from their first byte for every label; [`Excerpt`] answers with a window of the
-//! lines that matter, found through the line table, so that a file of any size costs nothing. Lines longer than a
-//! screen are clipped around the fault.
+//! Diagnostics for people, drawn by miette from a report made by hand, with [`Excerpt`]s for its sources.
 
+use super::excerpt::Excerpt;
 use super::{Counts, Diagnostic, Severity, harmless, severity_word};
-use crate::diag::{Frame, SourceId, SourceMap, Span};
-use miette::{GraphicalReportHandler, GraphicalTheme, LabeledSpan, MietteError, SourceSpan, ThemeCharacters};
-use miette::{MietteSpanContents, SourceCode, SpanContents, ThemeStyles};
+use crate::diag::{Frame, Label, SourceMap, Span};
+use miette::{GraphicalReportHandler, GraphicalTheme, LabeledSpan, SourceCode, ThemeCharacters, ThemeStyles};
 use std::fmt::{self, Write as _};
 
 /// How many diagnostics are shown; the rest are counted. A person mends the first few and runs again.
 const MOST_SHOWN: usize = 20;
-/// A line of more bytes than this is shown in part: a screen or two of text.
-const LONG_LINE: usize = 400;
-/// What is shown of a long line on either side of the fault, in bytes.
-const CLIP_MARGIN: usize = 60;
+/// Columns that line numbers, the bar and the signs of a cut take.
+const GUTTER: usize = 12;
 /// How many steps of a trace are shown at its inner and outer end.
 const TRACE_ENDS: [usize; 2] = [8, 3];
 
@@ -33,13 +27,18 @@ impl Style {
     pub fn plain(width: usize) -> Self {
         Style { colour: false, width }
     }
+
+    /// The columns that are used: of a very narrow terminal more than it has, of a very wide one no more than can be read.
+    fn width(self) -> usize {
+        self.width.clamp(40, 200)
+    }
 }
 
 /// The first diagnostics in the order given, each with its excerpt, hints and trace, and how many more there are.
 pub fn human(diagnostics: &[Diagnostic], sources: &SourceMap, style: Style) -> String {
     let mut text = String::new();
     for diagnostic in most_telling(diagnostics) {
-        let report = Report::new(diagnostic, sources);
+        let report = Report::new(diagnostic, sources, style.width());
         for part in std::iter::once(&report).chain(&report.elsewhere) {
             let drawn = handler(part, style).render_report(&mut text, part);
             drawn.expect("excerpts give every label's text, and a string takes it");
@@ -65,14 +64,14 @@ fn most_telling(diagnostics: &[Diagnostic]) -> Vec<&Diagnostic> {
 }
 
 /// Draws one report. The theme's sign for its severity carries the code: `error[E0101]: message`.
-fn handler(report: &Report<'_>, style: Style) -> GraphicalReportHandler {
+fn handler(report: &Report, style: Style) -> GraphicalReportHandler {
     let styles = if style.colour { ThemeStyles::ansi() } else { ThemeStyles::none() };
     let mut characters = ThemeCharacters::unicode();
     for sign in [&mut characters.error, &mut characters.warning, &mut characters.advice] {
         sign.clone_from(&report.heading);
     }
     GraphicalReportHandler::new_themed(GraphicalTheme { characters, styles })
-        .with_width(style.width.clamp(40, 200))
+        .with_width(style.width())
         .with_links(false)
         .with_context_lines(1)
         .without_syntax_highlighting()
@@ -95,180 +94,96 @@ fn push_trace(text: &mut String, trace: &[Frame], sources: &SourceMap) {
 }
 
 /// What miette draws: a diagnostic, or one of its labels that stands elsewhere.
-struct Report<'a> {
+struct Report {
     heading: String,
     severity: miette::Severity,
     message: String,
     labels: Vec<LabeledSpan>,
-    source: Option<Excerpt<'a>>,
+    source: Option<Excerpt>,
     help: Option<String>,
-    elsewhere: Vec<Report<'a>>,
+    elsewhere: Vec<Report>,
 }
 
-impl<'a> Report<'a> {
-    fn new(diagnostic: &Diagnostic, sources: &'a SourceMap) -> Self {
-        let mut report = Report {
-            heading: format!("{}[{}]:", severity_word(diagnostic.severity), diagnostic.code.text()),
-            severity: match diagnostic.severity {
-                Severity::Error => miette::Severity::Error,
-                Severity::Warning => miette::Severity::Warning,
-            },
-            message: diagnostic.message.clone(),
-            labels: Vec::new(),
-            source: None,
-            help: (!diagnostic.hints.is_empty()).then(|| diagnostic.hints.join("\n")),
-            elsewhere: Vec::new(),
+impl Report {
+    fn new(diagnostic: &Diagnostic, sources: &SourceMap, width: usize) -> Self {
+        let severity = match diagnostic.severity {
+            Severity::Error => miette::Severity::Error,
+            Severity::Warning => miette::Severity::Warning,
         };
-        if let Some(span) = diagnostic.span {
-            report.underline(span, &diagnostic.label, true, sources);
-        }
-        for label in &diagnostic.labels {
-            let beside = diagnostic.span.is_some_and(|span| can_share_excerpt(span, label.span, sources));
-            if beside {
-                report.underline(label.span, &label.text, false, sources);
-            } else {
-                report.elsewhere.push(Report::elsewhere(label.span, &label.text, sources));
-            }
-        }
+        let heading = format!("{}[{}]:", severity_word(diagnostic.severity), diagnostic.code.text());
+        let mut report = Report::bare(heading, severity, &diagnostic.message);
+        report.help = (!diagnostic.hints.is_empty()).then(|| diagnostic.hints.join("\n"));
+        let primary = diagnostic.span.map(|span| Label { span, text: diagnostic.label.clone() });
+        let is_here = |label: &Label| primary.as_ref().is_some_and(|p| p.span.source == label.span.source);
+        let (here, mut elsewhere): (Vec<Label>, Vec<Label>) =
+            diagnostic.labels.iter().cloned().partition(|label| is_here(label));
+        elsewhere.extend(report.underline(primary.iter().cloned().chain(here).collect(), sources, width));
+        report.elsewhere = elsewhere.into_iter().map(|label| Report::of(label, sources, width)).collect();
         report
     }
 
-    fn elsewhere(span: Span, text: &str, sources: &'a SourceMap) -> Self {
-        let mut report = Report {
-            heading: "note:".to_owned(),
-            severity: miette::Severity::Advice,
-            message: text.to_owned(),
+    /// A label that stands apart.
+    fn of(label: Label, sources: &SourceMap, width: usize) -> Self {
+        let mut report = Report::bare("note:".to_owned(), miette::Severity::Advice, &label.text);
+        report.underline(vec![Label { span: label.span, text: String::new() }], sources, width);
+        report
+    }
+
+    fn bare(heading: String, severity: miette::Severity, message: &str) -> Self {
+        Report {
+            heading,
+            severity,
+            message: message.to_owned(),
             labels: Vec::new(),
             source: None,
             help: None,
             elsewhere: Vec::new(),
-        };
-        report.underline(span, "", true, sources);
-        report
+        }
     }
 
-    /// Adds an underline, or, in an empty file, which has nothing to underline, names the file in the message.
-    fn underline(&mut self, span: Span, label: &str, primary: bool, sources: &'a SourceMap) {
-        if sources.text(span.source).is_empty() {
-            let _ = write!(self.message, " ({} is empty)", sources.name(span.source));
-            return;
+    /// Underlines labels of one file, the first as the primary one, and gives back those that a cut of a long line leaves
+    /// out. In an empty file, which has nothing to underline, the file is named in the message.
+    fn underline(&mut self, labels: Vec<Label>, sources: &SourceMap, width: usize) -> Vec<Label> {
+        let Some(id) = labels.first().map(|label| label.span.source) else { return Vec::new() };
+        if sources.text(id).is_empty() {
+            let _ = write!(self.message, " ({} is empty)", sources.name(id));
+            return Vec::new();
         }
-        let span = visible(span, sources);
-        let label = (!label.is_empty()).then(|| label.to_owned());
-        let place = (span.start as usize, (span.end - span.start) as usize);
-        self.labels.push(match primary {
-            true => LabeledSpan::new_primary_with_span(label, place),
-            false => LabeledSpan::new_with_span(label, place),
-        });
-        self.source = Some(Excerpt { sources, id: span.source });
-    }
-}
-
-/// Two labels are drawn in one excerpt where they stand in one file, and not on one endless line.
-fn can_share_excerpt(a: Span, b: Span, sources: &SourceMap) -> bool {
-    let long = |span: Span| {
-        let line = sources.line_index(span.source, span.start as usize);
-        sources.lines(span.source, line, line).len() > LONG_LINE
-    };
-    a.source == b.source
-        && a != b
-        && (a.start.abs_diff(b.start) < LONG_LINE as u32 / 2 || !(long(a) || long(b)))
-}
-
-/// The part of a span that is underlined: its first line, and at the end of the text its last character; whole characters.
-fn visible(span: Span, sources: &SourceMap) -> Span {
-    let text = sources.text(span.source);
-    let whole = |mut at: usize| {
-        while !text.is_char_boundary(at) {
-            at -= 1;
+        let spans: Vec<Span> = labels.iter().map(|label| label.span).collect();
+        let (excerpt, places) = Excerpt::new(id, &spans, sources, width - GUTTER);
+        let mut left_out = Vec::new();
+        for (i, (label, place)) in labels.into_iter().zip(places).enumerate() {
+            let Some(place) = place else {
+                left_out.push(label);
+                continue;
+            };
+            let text = (!label.text.is_empty()).then_some(label.text);
+            let place = (place.start, place.len());
+            self.labels.push(match i {
+                0 => LabeledSpan::new_primary_with_span(text, place),
+                _ => LabeledSpan::new_with_span(text, place),
+            });
         }
-        at
-    };
-    let mut start = whole((span.start as usize).min(text.len()));
-    if start == text.len() && text.ends_with('\n') {
-        start = text.trim_ascii_end().len();
-    }
-    let line = sources.line_index(span.source, start);
-    let line_end = sources.lines(span.source, line, line).end.max(start);
-    let end = whole((span.end as usize).clamp(start, line_end).min(start + LONG_LINE));
-    let seen = text[start..end].trim_ascii_end().len();
-    Span::new(span.source, start, if seen == 0 { end } else { start + seen })
-}
-
-/// A file as miette asks for it.
-struct Excerpt<'a> {
-    sources: &'a SourceMap,
-    id: SourceId,
-}
-
-impl SourceCode for Excerpt<'_> {
-    fn read_span<'b>(
-        &'b self,
-        span: &SourceSpan,
-        before: usize,
-        after: usize,
-    ) -> Result<Box<dyn SpanContents<'b> + 'b>, MietteError> {
-        let (start, end) = (span.offset(), span.offset() + span.len());
-        let text = self.sources.text(self.id);
-        if end > text.len() {
-            return Err(MietteError::OutOfBounds);
-        }
-        let first = self.sources.line_index(self.id, start).saturating_sub(before);
-        let last = self.sources.line_index(self.id, end) + after;
-        let lines = self.sources.lines(self.id, first, last);
-        let is_long = (first..=last).any(|l| self.sources.lines(self.id, l, l).len() > LONG_LINE);
-        let window = match (before, after) {
-            (0, 0) => start..end,
-            _ if is_long => self.clip(start, end),
-            _ => lines,
-        };
-        let at = self.sources.line_column(self.id, window.start as u32);
-        let count = text.as_bytes()[window.clone()].iter().filter(|b| **b == b'\n').count();
-        Ok(Box::new(MietteSpanContents::new_named(
-            harmless(self.sources.name(self.id)).into_owned(),
-            &text.as_bytes()[window.clone()],
-            (window.start, window.len()).into(),
-            at.line - 1,
-            at.column - 1,
-            count,
-        )))
+        self.source = Some(excerpt);
+        left_out
     }
 }
 
-impl Excerpt<'_> {
-    /// The neighbourhood of a fault within its own lines.
-    fn clip(&self, start: usize, end: usize) -> std::ops::Range<usize> {
-        let text = self.sources.text(self.id);
-        let first = self.sources.line_index(self.id, start);
-        let last = self.sources.line_index(self.id, end);
-        let lines = self.sources.lines(self.id, first, last);
-        let mut from = start.saturating_sub(CLIP_MARGIN).max(lines.start);
-        let mut to = (end + CLIP_MARGIN).min(lines.end);
-        while !text.is_char_boundary(from) {
-            from -= 1;
-        }
-        while !text.is_char_boundary(to) {
-            to += 1;
-        }
-        from..to
-    }
-}
-
-impl fmt::Debug for Report<'_> {
+impl fmt::Debug for Report {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(&self.message)
     }
 }
 
-impl fmt::Display for Report<'_> {
+impl fmt::Display for Report {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(&self.message)
     }
 }
 
-impl std::error::Error for Report<'_> {}
+impl std::error::Error for Report {}
 
-impl miette::Diagnostic for Report<'_> {
+impl miette::Diagnostic for Report {
     fn severity(&self) -> Option<miette::Severity> {
         Some(self.severity)
     }
