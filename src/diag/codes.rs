@@ -52,7 +52,6 @@ codes! {
     DuplicateName = "E0102", "a name is defined twice in one scope";
     NotAssignable = "E0103", "only a `var` can be assigned";
     UsedBeforeSet = "E0104", "a name is used before it has a value";
-    UnusedName = "W0105", "a name is never used";
     // 2: values and types
     TypeMismatch = "E0201", "a value is of the wrong type";
     WrongArity = "E0202", "a call has the wrong arguments";

@@ -108,7 +108,7 @@ const FAULTS: &[(&str, &[&str])] = &[
     ("fn never() { sphere { raidus 2 } }", &["E0301"]),
     ("radius 3", &["E0301"]),
     ("sphere { material clay { diffuse 1 } }", &["E0306"]),
-    ("let a = 3\na\nsin\na + 1", &["E0307", "E0307", "E0307"]),
+    ("let a = 3\na\nsin", &["E0307", "E0307"]),
     ("fn f() { radius 2 }\nf()", &["E0307"]),
     ("material { diffuse 1 }", &["E0307"]),
     ("group { camera { eye x  look_at y } }", &["E0307"]),
