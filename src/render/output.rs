@@ -155,14 +155,19 @@ fn write_exr(film: &Film, about: &Metadata, bytes: &mut Cursor<Vec<u8>>) -> Resu
 
 /// All pixels as 8-bit sRGB, row by row.
 pub fn develop_film(film: &Film, develop: &Development) -> Vec<u8> {
-    film.pixels.iter().flat_map(|c| develop.pixel(*c)).collect()
+    let mut bytes = Vec::with_capacity(film.pixels.len() * 3);
+    for pixel in &film.pixels {
+        bytes.extend_from_slice(&develop.pixel(*pixel));
+    }
+    bytes
 }
 
 impl Development {
     /// Linear radiance to 8-bit sRGB.
     pub fn pixel(&self, radiance: Rgb) -> [u8; 3] {
         let exposed = if self.exposure == 0.0 { radiance } else { radiance * exp2(self.exposure) };
-        tone(self.tonemap, exposed).to_array().map(to_srgb8)
+        let c = tone(self.tonemap, exposed);
+        [to_srgb8(c.x), to_srgb8(c.y), to_srgb8(c.z)]
     }
 }
 
@@ -174,17 +179,38 @@ fn tone(map: ToneMap, c: Rgb) -> Rgb {
     }
 }
 
-/// A linear number in 0 … 1 as 8-bit sRGB (IEC 61966-2-1), clipped, rounded to the nearest.
+/// A linear number in 0 … 1 as 8-bit sRGB (IEC 61966-2-1), clipped, rounded to the nearest. NaN is 0.
 pub fn to_srgb8(linear: f64) -> u8 {
-    // A table of where each step begins answers without a power for each channel of each pixel.
-    let steps = srgb_steps();
-    steps.partition_point(|step| *step <= linear) as u8
+    // Tables answer without a power for each channel of each pixel: of the least that each number stands for, and of where
+    // among them to begin to look.
+    let table = srgb_table();
+    let cell = (linear.clamp(0.0, 1.0) * CELLS as f64) as usize;
+    let mut encoded = table.first[cell];
+    while encoded < 255 && table.steps[encoded as usize] <= linear {
+        encoded += 1;
+    }
+    encoded
 }
 
-/// The least linear number that rounds to each of 1 … 255.
-fn srgb_steps() -> &'static [f64; 255] {
-    static STEPS: std::sync::OnceLock<[f64; 255]> = std::sync::OnceLock::new();
-    STEPS.get_or_init(|| std::array::from_fn(|i| srgb_decode((i as f64 + 0.5) / 255.0)))
+/// Into how many equal parts 0 … 1 is cut: steps are nowhere much closer (sRGB begins with 12.92 · 255 = 3295 a unit).
+const CELLS: usize = 4096;
+
+struct SrgbTable {
+    /// The least linear number that rounds to each of 1 … 255.
+    steps: [f64; 255],
+    /// What the lower end of each cell, and 1, rounds to.
+    first: [u8; CELLS + 1],
+}
+
+fn srgb_table() -> &'static SrgbTable {
+    static TABLE: std::sync::OnceLock<SrgbTable> = std::sync::OnceLock::new();
+    TABLE.get_or_init(|| {
+        let steps: [f64; 255] = std::array::from_fn(|i| srgb_decode((i as f64 + 0.5) / 255.0));
+        let first = std::array::from_fn(|cell| {
+            steps.partition_point(|step| *step <= cell as f64 / CELLS as f64) as u8
+        });
+        SrgbTable { steps, first }
+    })
 }
 
 /// Writes bytes so that the file appears whole or not at all: beside its place, then renamed over it.
@@ -203,7 +229,6 @@ pub fn write_atomically(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
     }
     let mut file = options.tempfile_in(folder)?;
     file.write_all(bytes)?;
-    file.as_file().sync_all()?;
     file.persist(path).map(drop).map_err(|e| e.error)
 }
 

@@ -87,15 +87,19 @@ impl Tracer for Whitted {
         sampler.rays.camera += 1;
         let mut tasks = TASKS.take();
         tasks.clear();
-        tasks.push(Task { ray, weight: Rgb::ONE, segment: 1, inside: Inside::NOTHING });
+        let mut task = Task { ray, weight: Rgb::ONE, segment: 1, inside: Inside::NOTHING };
         let mut sum = Rgb::ZERO;
-        while let Some(task) = tasks.pop() {
+        loop {
             match self.follow(world, &task, &mut tasks, sampler) {
                 Ok(radiance) => sum += radiance,
                 Err(fault) => {
                     sampler.undefined = Some(fault);
                     break;
                 }
+            }
+            match tasks.pop() {
+                Some(next) => task = next,
+                None => break,
             }
         }
         TASKS.set(tasks);
@@ -176,12 +180,12 @@ fn emitted(world: &World, hit: &Hit<'_>, bsdf: &Bsdf) -> Rgb {
 /// The media that a ray is inside of, innermost last: only as many as fit; more deeply nested ones count as the last.
 #[derive(Clone, Copy)]
 struct Inside {
-    absorb: [Rgb; 4],
+    absorb: [Rgb; 3],
     n: usize,
 }
 
 impl Inside {
-    const NOTHING: Inside = Inside { absorb: [Rgb::ZERO; 4], n: 0 };
+    const NOTHING: Inside = Inside { absorb: [Rgb::ZERO; 3], n: 0 };
 
     /// After passing a surface, into the medium or out of it.
     fn across(mut self, bsdf: &Bsdf) -> Inside {
@@ -197,7 +201,7 @@ impl Inside {
     /// For a ray that meets a surface from within without having entered it: the camera stands inside.
     fn or_in(self, bsdf: &Bsdf) -> Inside {
         let unknown = self.n == 0 && !bsdf.outside && bsdf.is_transmissive();
-        if unknown { Inside { absorb: [bsdf.absorb; 4], n: 1 } } else { self }
+        if unknown { Inside { absorb: [bsdf.absorb; 3], n: 1 } } else { self }
     }
 
     /// Share of light left after a length, by Beer's law. Infinite lengths leave nothing of what is absorbed at all.

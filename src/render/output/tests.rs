@@ -37,6 +37,11 @@ fn the_transfer_is_srgb_and_rounds_to_the_nearest() {
     for i in 0..=255u8 {
         assert_eq!(to_srgb8(srgb_decode(f64::from(i) / 255.0)), i);
     }
+    for i in 0..=100_000 {
+        let x = f64::from(i) / 100_000.0;
+        let exact = (crate::math::colour::srgb_encode(x) * 255.0).round() as u8;
+        assert_eq!(to_srgb8(x), exact, "{x}");
+    }
 }
 
 #[test]
