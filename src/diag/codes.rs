@@ -98,6 +98,7 @@ codes! {
     UnknownSetting = "E0606", "`--set` names no top-level `let`";
     // 7: rendering
     UndefinedSample = "E0701", "a function is undefined at samples of the picture";
+    NonFiniteSample = "W0702", "samples of the picture are infinite or not a number";
 }
 
 impl Code {

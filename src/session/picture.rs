@@ -116,7 +116,17 @@ impl Prepared {
 
 /// What went wrong while a picture was made, one diagnostic for each expression.
 pub fn faults(film: &Film) -> Vec<Diagnostic> {
-    film.report.undefined.iter().map(undefined).collect()
+    let not_finite = film.report.first_non_finite.as_ref().map(not_finite);
+    film.report.undefined.iter().map(undefined).chain(not_finite).collect()
+}
+
+fn not_finite(fault: &Fault) -> Diagnostic {
+    let [x, y] = fault.pixel;
+    let samples = if fault.count == 1 { "1 sample is".to_owned() } else { format!("{} samples are", fault.count) };
+    let message = format!("{samples} infinite or not a number, and left out; the first is of pixel ({x}, {y})");
+    Diagnostic::new(Code::NonFiniteSample, fault.span, message)
+        .label("seen there")
+        .hint("look for a light or a material with a number that is far too large")
 }
 
 fn undefined(fault: &Fault) -> Diagnostic {
