@@ -65,6 +65,7 @@ impl MeshAggregate {
 /// Shapes and placements, in the order of the scene, as columns: what a ray needs first apart from what a hit needs.
 #[derive(Debug, Default)]
 pub(super) struct Group {
+    /// In the order of the tree once it is settled, so that a leaf reads consecutive memory; all other columns keep the scene's.
     pub items: Vec<Item>,
     pub tree: Tree,
     pub bounds: Aabb,
@@ -81,7 +82,7 @@ pub(super) struct Group {
     pub lights: Vec<(Arc<Light>, Affine)>,
     /// Items that are the objects of area lights, with them.
     pub area_lights: Vec<(u32, Arc<Light>)>,
-    /// The items that are placements, in order.
+    /// Where in `items` the placements are, in the order of the scene.
     pub instances: Vec<u32>,
     pub placements: u64,
 }
@@ -145,7 +146,31 @@ impl Group {
         self.placements = next - 1;
     }
 
-    /// The placement that holds, or is, the one numbered `id` from this group; none for 0.
+    /// Puts the items in the order of the tree, in place: cycle by cycle, as there may be millions.
+    pub fn settle(&mut self) {
+        debug_assert_eq!(self.tree.order().len(), self.items.len(), "every item has a box that is not empty");
+        let mut position = vec![0u32; self.items.len()];
+        for (at, &item) in self.tree.order().iter().enumerate() {
+            position[item as usize] = at as u32;
+        }
+        for item in &mut self.instances {
+            *item = position[*item as usize];
+        }
+        for i in 0..position.len() {
+            while position[i] as usize != i {
+                let to = position[i] as usize;
+                self.items.swap(i, to);
+                position.swap(i, to);
+            }
+        }
+    }
+
+    /// The number in the scene's order of the item at a position.
+    pub fn number_of(&self, position: u32) -> u32 {
+        self.tree.order()[position as usize]
+    }
+
+    /// The placement that holds, or is, the one numbered `id` from this group, and its position; none for 0.
     pub fn placement(&self, id: u64) -> Option<(u32, &Instance)> {
         if id == 0 {
             return None;

@@ -44,10 +44,15 @@ pub(super) fn lower(
     };
     let world_group = lowering.group(Source::Owned(nodes.into_iter()), 0);
     lowering.aggregates[0] = Aggregate::Group(world_group);
-    let Lowering { aggregates, materials, mut sink, .. } = lowering;
+    let Lowering { mut aggregates, materials, mut sink, .. } = lowering;
     let materials = materials.all;
     sink.extend(super::texture::load_pictures(materials.iter().map(|m| &**m), assets));
     let (lights, emitters) = lights::gather(&aggregates, &materials, &mut sink);
+    for aggregate in &mut aggregates {
+        if let Aggregate::Group(group) = aggregate {
+            group.settle();
+        }
+    }
     (World { lights, emitters, aggregates, materials }, sink.into_sorted())
 }
 
@@ -265,6 +270,9 @@ impl Lowering<'_> {
     }
 
     fn instance(&mut self, group: &mut Group, aggregate: u32, transform: Option<Box<Affine>>, facts: Facts) {
+        if self.aggregates[aggregate as usize].bounds().is_empty() {
+            return;
+        }
         let transform = transform.map(|t| *t);
         group.add(Item::Instance(Box::new(Instance { aggregate, transform, first: 0 })), facts);
     }

@@ -10,26 +10,60 @@ use crate::math::error::gamma;
 use glam::DVec3;
 
 /// A step from a group into a placement.
+#[derive(Clone, Copy)]
 struct Step<'w> {
     group: &'w Group,
+    /// Its number in the scene's order.
     item: u32,
     instance: &'w Instance,
 }
 
 /// The placements on the way to a primitive, outermost first, and the aggregate it is in.
 struct Path<'w> {
-    steps: Vec<Step<'w>>,
+    steps: Steps<'w>,
     aggregate: &'w Aggregate,
+}
+
+/// A few steps without allocation, any number with.
+enum Steps<'w> {
+    None,
+    One([Step<'w>; 1]),
+    Many(Vec<Step<'w>>),
+}
+
+impl<'w> Steps<'w> {
+    fn push(&mut self, step: Step<'w>) {
+        *self = match std::mem::replace(self, Steps::None) {
+            Steps::None => Steps::One([step]),
+            Steps::One([first]) => Steps::Many(vec![first, step]),
+            Steps::Many(mut steps) => {
+                steps.push(step);
+                Steps::Many(steps)
+            }
+        };
+    }
+}
+
+impl<'w> std::ops::Deref for Steps<'w> {
+    type Target = [Step<'w>];
+
+    fn deref(&self) -> &[Step<'w>] {
+        match self {
+            Steps::None => &[],
+            Steps::One(one) => one,
+            Steps::Many(many) => many,
+        }
+    }
 }
 
 impl World {
     fn path(&self, mut id: u64) -> Path<'_> {
-        let mut path = Path { steps: Vec::new(), aggregate: &self.aggregates[0] };
+        let mut path = Path { steps: Steps::None, aggregate: &self.aggregates[0] };
         while let Aggregate::Group(group) = path.aggregate
-            && let Some((item, instance)) = group.placement(id)
+            && let Some((position, instance)) = group.placement(id)
         {
             id -= instance.first;
-            path.steps.push(Step { group, item, instance });
+            path.steps.push(Step { group, item: group.number_of(position), instance });
             path.aggregate = &self.aggregates[instance.aggregate as usize];
         }
         path
@@ -40,15 +74,15 @@ impl World {
         let path = self.path(candidate.id.instance);
         let (shape, own_transform) = match path.aggregate {
             Aggregate::Mesh(_) => (None, None),
-            Aggregate::Group(group) => match &group.items[candidate.id.shape as usize] {
+            Aggregate::Group(group) => match &group.items[candidate.position as usize] {
                 Item::Shape(shape, transform) => (Some(shape), transform.as_deref()),
                 Item::Instance(_) => return None,
             },
         };
         let placements = path.steps.iter().filter_map(|step| step.instance.transform.as_ref());
-        let transforms: Vec<&Affine> = placements.chain(own_transform).collect();
+        let transforms = placements.chain(own_transform);
         let mut local = *ray;
-        for transform in &transforms {
+        for transform in transforms.clone() {
             local = local.into_local(transform)?.0;
         }
         let surface = match (shape, path.aggregate) {
@@ -57,7 +91,7 @@ impl World {
             (None, Aggregate::Group(_)) => return None,
         };
         let material = &self.materials[self.material_on(&path, candidate.id) as usize];
-        let world = if transforms.is_empty() { surface } else { carried(&surface, &transforms) };
+        let world = carried(&surface, transforms);
         let normal = on_side_of(world.normal, world.geometric_normal);
         Some(Hit {
             t,
@@ -91,7 +125,7 @@ impl World {
     pub fn provenance(&self, primitive: PrimitiveId) -> Option<Provenance> {
         let path = self.path(primitive.instance);
         let mut spans = Vec::new();
-        for step in &path.steps {
+        for step in path.steps.iter() {
             spans.extend(step.group.scopes_around(step.item as usize));
             spans.push(step.group.span[step.item as usize]);
         }
@@ -114,11 +148,10 @@ impl World {
 /// A surface through transforms, the outermost first. Its error grows by the rounding on the way up and by what comes of going
 /// down the same way again, which the next ray will do: that part is measured, since composed inverses are inverses only up to the
 /// condition of the map.
-fn carried(surface: &Surface, transforms: &[&Affine]) -> Surface {
-    let mut up = Affine::IDENTITY;
-    for transform in transforms.iter().rev() {
-        up = up.then(transform);
-    }
+fn carried<'t>(surface: &Surface, transforms: impl Iterator<Item = &'t Affine> + Clone) -> Surface {
+    let mut all = transforms.clone();
+    let Some(first) = all.next() else { return *surface };
+    let up = all.fold(*first, |outer, inner| inner.then(&outer));
     let point = up.point(surface.point);
     let mut back = point;
     let mut doubt_down = DVec3::ZERO;

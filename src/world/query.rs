@@ -12,6 +12,8 @@ pub(super) struct Candidate {
     /// Distance in the world's units of the ray.
     pub t: f64,
     pub id: PrimitiveId,
+    /// Where the shape is among its group's items.
+    pub position: u32,
     /// In the units of the shape's own space.
     pub meet: Meet,
 }
@@ -63,7 +65,7 @@ impl<'w> Query<'w> {
                         if let Some(meet) = mesh.shape.meet(position, &ray, self.limit * local.per_world) {
                             let part = mesh.shape.triangle_at(position);
                             let id = PrimitiveId { instance: local.instance, shape: 0, part };
-                            self.offer(id, meet, &local);
+                            self.offer(id, 0, meet, &local);
                         }
                     }
                     self.rest(&local)
@@ -76,8 +78,7 @@ impl<'w> Query<'w> {
         let limit = self.limit * local.per_world;
         group.tree.traverse(local.ray.origin, local.ray.direction, limit, |range, _| {
             for position in range {
-                let item = group.tree.order()[position] as usize;
-                self.visit_item(group, item, &local);
+                self.visit_item(group, position, &local);
                 if self.any && self.found.is_some() {
                     break;
                 }
@@ -91,11 +92,12 @@ impl<'w> Query<'w> {
         if self.any && self.found.is_some() { -1.0 } else { self.limit * local.per_world }
     }
 
-    fn visit_item(&mut self, group: &Group, item: usize, local: &Local) {
-        if !group.hide.is_empty() && is_hidden(group.hide[item], self.kind) {
+    fn visit_item(&mut self, group: &Group, position: usize, local: &Local) {
+        let number = || group.number_of(position as u32);
+        if !group.hide.is_empty() && is_hidden(group.hide[number() as usize], self.kind) {
             return;
         }
-        match &group.items[item] {
+        match &group.items[position] {
             Item::Shape(shape, transform) => {
                 let (ray, factor) = match transform {
                     None => (local.ray, 1.0),
@@ -106,8 +108,8 @@ impl<'w> Query<'w> {
                 };
                 let inside = Local { ray, per_world: local.per_world * factor, instance: local.instance };
                 if let Some(meet) = shape.meet(&ray, self.limit * inside.per_world) {
-                    let id = PrimitiveId { instance: local.instance, shape: item as u32, part: 0 };
-                    self.offer(id, meet, &inside);
+                    let id = PrimitiveId { instance: local.instance, shape: number(), part: 0 };
+                    self.offer(id, position as u32, meet, &inside);
                 }
             }
             Item::Instance(instance) => {
@@ -128,12 +130,12 @@ impl<'w> Query<'w> {
         }
     }
 
-    fn offer(&mut self, id: PrimitiveId, meet: Meet, local: &Local) {
+    fn offer(&mut self, id: PrimitiveId, position: u32, meet: Meet, local: &Local) {
         let t = meet.t / local.per_world;
         let better = self.found.is_none_or(|best| t < best.t || (t == best.t && id < best.id));
         if better && t <= self.limit {
             self.limit = t;
-            self.found = Some(Candidate { t, id, meet });
+            self.found = Some(Candidate { t, id, position, meet });
         }
     }
 }

@@ -19,16 +19,41 @@ use frame::Frame;
 /// Children of a node.
 const WIDTH: usize = 4;
 
-/// Up to four children, as arrays over the children so that one instruction tests all of them.
+/// Up to four children, as arrays over the children so that one instruction tests all of them. Two cache lines.
 #[derive(Clone, Copy, Debug)]
 #[repr(align(64))]
 struct Node {
-    /// Lower x, y, z and upper x, y, z of each child, in the tree's frame. An absent child is empty (+∞ … −∞).
-    planes: [[f32; WIDTH]; 6],
+    /// Lower x, y, z and upper x, y, z of each child, in the tree's frame; an absent child is empty (+∞ … −∞). Then the bits of the
+    /// child's node or first item, and of how many items a leaf has, 0 for a node. Eight rows, so that three bits name one.
+    rows: [[f32; WIDTH]; 8],
+}
+
+impl Node {
+    const CHILD: usize = 6;
+    const COUNT: usize = 7;
+
+    /// Without children.
+    const EMPTY: Node = {
+        const BEYOND: [f32; WIDTH] = [f32::INFINITY; WIDTH];
+        const BEFORE: [f32; WIDTH] = [f32::NEG_INFINITY; WIDTH];
+        const NONE: [f32; WIDTH] = [0.0; WIDTH];
+        Node { rows: [BEYOND, BEYOND, BEYOND, BEFORE, BEFORE, BEFORE, NONE, NONE] }
+    };
+
     /// The child's node, or its first item.
-    child: [u32; WIDTH],
+    fn child(&self, slot: usize) -> u32 {
+        self.rows[Node::CHILD][slot].to_bits()
+    }
+
     /// How many items a leaf has; 0 for a node.
-    count: [u8; WIDTH],
+    fn count(&self, slot: usize) -> u32 {
+        self.rows[Node::COUNT][slot].to_bits()
+    }
+
+    fn set_child(&mut self, slot: usize, child: u32, count: u32) {
+        self.rows[Node::CHILD][slot] = f32::from_bits(child);
+        self.rows[Node::COUNT][slot] = f32::from_bits(count);
+    }
 }
 
 /// The hierarchy.

@@ -60,7 +60,7 @@ struct Narrow {
     /// Of the direction; widened for the far planes.
     near_inverse: [f32; 3],
     far_inverse: [f32; 3],
-    /// Rows of `Node::planes`.
+    /// Rows of [`Node`].
     near_row: [usize; 3],
     far_row: [usize; 3],
     /// s = (t − start)·per_t.
@@ -111,7 +111,7 @@ impl Narrow {
     fn meets(&self, node: &Node, limit: f32) -> (u32, [f32; WIDTH]) {
         let (mut near, mut far) = ([0.0f32; WIDTH], [limit; WIDTH]);
         for a in 0..3 {
-            let (enter, leave) = (&node.planes[self.near_row[a]], &node.planes[self.far_row[a]]);
+            let (enter, leave) = (&node.rows[self.near_row[a] & 7], &node.rows[self.far_row[a] & 7]);
             for i in 0..WIDTH {
                 let x = (enter[i] - self.near_origin[a]) * self.near_inverse[a];
                 near[i] = if x > near[i] { x } else { near[i] };
@@ -227,7 +227,7 @@ fn push_children(node: &Node, ray: &Narrow, limit: f32, stack: &mut Stack) {
     while mask != 0 {
         let i = mask.trailing_zeros() as usize;
         mask &= mask - 1;
-        stack.push(Entry { near: near[i], child: node.child[i], count: u32::from(node.count[i]) });
+        stack.push(Entry { near: near[i], child: node.child(i), count: node.count(i) });
     }
     if !spilled && stack.spilled.is_empty() {
         sort_far_first(&mut stack.entries[bottom..stack.len]);

@@ -17,8 +17,8 @@ use glam::{DVec2, DVec3};
 pub struct Sheared {
     origin: DVec3,
     direction: DVec3,
-    /// The axes, the ray's largest last.
-    axes: [usize; 3],
+    /// The ray's largest axis, which is z after the shear; x and y are the next two.
+    z: usize,
     /// x and y of the direction over its z, and 1 over its z.
     shear: [f64; 3],
 }
@@ -38,24 +38,32 @@ impl Sheared {
         } else {
             2
         };
-        let axes = [(z + 1) % 3, (z + 2) % 3, z];
         let d = ray.direction.to_array();
-        let shear = [d[axes[0]] / d[z], d[axes[1]] / d[z], 1.0 / d[z]];
-        Sheared { origin: ray.origin, direction: ray.direction, axes, shear }
+        let shear = [d[(z + 1) % 3] / d[z], d[(z + 2) % 3] / d[z], 1.0 / d[z]];
+        Sheared { origin: ray.origin, direction: ray.direction, z, shear }
     }
 
     /// A corner relative to the ray: sheared x and y, and z unsheared.
     #[inline(always)]
-    fn corner(&self, p: DVec3) -> [f64; 3] {
+    fn corner<const Z: usize>(&self, p: DVec3) -> [f64; 3] {
         let q = (p - self.origin).to_array();
-        let [x, y, z] = self.axes;
-        [q[x] - self.shear[0] * q[z], q[y] - self.shear[1] * q[z], q[z]]
+        let [x, y] = [(Z + 1) % 3, (Z + 2) % 3];
+        [q[x] - self.shear[0] * q[Z], q[y] - self.shear[1] * q[Z], q[Z]]
     }
 
     /// Where the ray meets the triangle, at a distance in (0, limit]; from either side.
     #[inline(always)]
     pub fn meet(&self, corners: [DVec3; 3], limit: f64) -> Option<Meet> {
-        let [a, b, c] = corners.map(|p| self.corner(p));
+        match self.z {
+            0 => self.meet_along::<0>(corners, limit),
+            1 => self.meet_along::<1>(corners, limit),
+            _ => self.meet_along::<2>(corners, limit),
+        }
+    }
+
+    #[inline(always)]
+    fn meet_along<const Z: usize>(&self, corners: [DVec3; 3], limit: f64) -> Option<Meet> {
+        let [a, b, c] = corners.map(|p| self.corner::<Z>(p));
         let mut u = c[0] * b[1] - c[1] * b[0];
         let mut v = a[0] * c[1] - a[1] * c[0];
         let mut w = b[0] * a[1] - b[1] * a[0];
