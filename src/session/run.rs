@@ -59,7 +59,7 @@ pub(super) fn evaluate(
         let set = settings(sources, options, &mut sink);
         match question {
             Some(None) => empty(sink),
-            question => run(options, loader, &files, &set, question.flatten().as_ref(), sink, stack),
+            question => run(options, loader, files, &set, question.flatten().as_ref(), sink, stack),
         }
     })
 }
@@ -79,7 +79,7 @@ fn empty(sink: Sink) -> Outcome {
 fn run(
     options: &Options,
     loader: &dyn Loader,
-    files: &Files,
+    mut files: Files,
     set: &[(Rc<str>, ast::Expr)],
     question: Option<&ast::Expr>,
     mut sink: Sink,
@@ -88,7 +88,9 @@ fn run(
     let limits = options.limits;
     let time = (options.time, f64::from(options.frame));
     let setting = Setting { limits, set, time: time.0, frame: time.1 };
-    let program = resolve(files, &setting, question, &mut sink);
+    let program = resolve(&files, &setting, question, &mut sink);
+    files.forget_trees();
+    let files = &files;
     let run = Run { program: &program, files, loader, limits, time, stack };
     let ran = eval::run(&run, &mut sink);
     Outcome {
@@ -131,6 +133,9 @@ fn settings(sources: &mut SourceMap, options: &Options, sink: &mut Sink) -> Vec<
 /// seen to take, doubled, in builds without optimisation. A scene that needs more is told so by the evaluator.
 const STACK_PER_CALL: usize = 24 << 10;
 
+/// Stack for one level of brackets, on the way through the parser, the resolver and the evaluator.
+const STACK_PER_LEVEL: usize = 32 << 10;
+
 /// The least and the most stack that is asked for. Only what is touched costs memory.
 const STACK: [usize; 2] = [64 << 20, 64 << 30];
 
@@ -139,7 +144,9 @@ const STACK: [usize; 2] = [64 << 20, 64 << 30];
 fn on_deep_stack<T: Send>(limits: &Limits, task: impl FnOnce(usize) -> T + Send) -> T {
     let waiting = Mutex::new(Some(task));
     let take = || waiting.lock().map_or(None, |mut task| task.take());
-    let mut size = limits.calls.saturating_mul(STACK_PER_CALL).clamp(STACK[0], STACK[1]);
+    let wanted = limits.calls.saturating_mul(STACK_PER_CALL);
+    let mut size =
+        wanted.saturating_add(limits.nesting.saturating_mul(STACK_PER_LEVEL)).clamp(STACK[0], STACK[1]);
     loop {
         let result = std::thread::scope(|scope| {
             let builder = std::thread::Builder::new().name("evaluation".into()).stack_size(size);

@@ -201,10 +201,16 @@ fn endless_recursion_is_an_error_and_deep_recursion_is_not() {
     let found = evaluate("fn f(n) = f(n + 1)\nlet a = f(0)").diagnostics;
     assert_eq!(codes(&found), ["E0403"]);
     assert!(found[0].hints.iter().any(|h| h.contains("--limit calls=")), "{:?}", found[0].hints);
-    let nested = "fn f(n) { if n > 0 { for i in 0..1 { group { f(n - 1) } } } else { sphere {} } }\nf(500)";
+    let nested = "fn f(n) { if n > 0 { for i in 0..1 { group { f(n - 1) } } } else { sphere {} } }\nf(400)";
     assert_eq!(told(&evaluate(nested)), "");
     let deep = "fn f(n) { if n > 0 { if true { return [f(n - 1)] } }  return [] }\nlet a = f(9900)";
     assert_eq!(told(&evaluate(deep)), "");
+}
+
+#[test]
+fn groups_inside_groups_end_before_the_stack_does() {
+    let text = "var g = sphere {}\nfor i in 0..5000 { let h = g  g = group { h } }\ng";
+    assert_eq!(codes(&evaluate(text).diagnostics), ["E0003"]);
 }
 
 #[test]
@@ -213,7 +219,10 @@ fn a_raised_guard_of_calls_gets_a_stack_that_holds_them() {
     let text = "fn f(n) = n == 0 ? 0 : 1 + f(n - 1)\nassert(f(150000) == 150000)";
     assert_eq!(told(&limited(text, limits)), "");
     let endless = Limits { calls: usize::MAX, ..Limits::default() };
-    assert_eq!(codes(&limited("fn f(n) = f(n + 1)\nf(0)", Limits { turns: 1000, ..endless }).diagnostics), ["E0404"]);
+    assert_eq!(
+        codes(&limited("fn f(n) = f(n + 1)\nf(0)", Limits { turns: 1000, ..endless }).diagnostics),
+        ["E0404"]
+    );
 }
 
 #[test]
@@ -230,7 +239,11 @@ fn each_guard_names_itself_and_its_flag() {
     for (text, code, name) in cases {
         let found = limited(text, limits).diagnostics;
         assert_eq!(codes(&found), [code], "{text}");
-        assert!(found[0].hints.iter().any(|h| h.contains(&format!("--limit {name}="))), "{text}: {:?}", found[0]);
+        assert!(
+            found[0].hints.iter().any(|h| h.contains(&format!("--limit {name}="))),
+            "{text}: {:?}",
+            found[0]
+        );
     }
 }
 
@@ -265,9 +278,15 @@ fn time_and_frame_are_those_of_the_options() {
 #[test]
 fn imports_are_relative_to_the_file_that_writes_them_and_run_once() {
     let files = [
-        ("scenes/main.scene", "import \"parts/a.scene\"\nimport \"parts/b.scene\" as b\nprint(one, b.two)\nb.ball"),
+        (
+            "scenes/main.scene",
+            "import \"parts/a.scene\"\nimport \"parts/b.scene\" as b\nprint(one, b.two)\nb.ball",
+        ),
         ("scenes/parts/a.scene", "import \"c.scene\"\nimport \"../parts/c.scene\"\nlet one = base + 1"),
-        ("scenes/parts/b.scene", "import \"c.scene\"\nlet two = base + 2\nlet ball = sphere {}\ncamera { eye z  look_at <0, 0, 0> }"),
+        (
+            "scenes/parts/b.scene",
+            "import \"c.scene\"\nlet two = base + 2\nlet ball = sphere {}\ncamera { eye z  look_at <0, 0, 0> }",
+        ),
         ("scenes/parts/c.scene", "let base = 10\nprint(\"c\")"),
     ];
     let evaluated = session(&files, Options::default()).evaluate_file(Path::new("scenes/main.scene"));
@@ -275,6 +294,21 @@ fn imports_are_relative_to_the_file_that_writes_them_and_run_once() {
     assert_eq!(evaluated.printed, ["c", "c", "11 12"]);
     assert_eq!(evaluated.scene.nodes.len(), 1);
     assert!(evaluated.scene.cameras.is_empty());
+}
+
+#[test]
+fn imports_inside_braces_are_seen_there_alone() {
+    let files = [
+        (
+            "a.scene",
+            "fn f() { import \"b.scene\"  return base }\nfn g() { import \"b.scene\"  return base * 2 }\n\
+                     let h = group { import \"b.scene\"  sphere { radius base } }\nprint(f(), g())\nh\nlet k = base",
+        ),
+        ("b.scene", "let base = 10"),
+    ];
+    let evaluated = session(&files, Options::default()).evaluate_file(Path::new("a.scene"));
+    assert_eq!(codes(&evaluated.diagnostics), ["E0101"], "{}", told(&evaluated));
+    assert_eq!(evaluated.printed, ["10 20"]);
 }
 
 #[test]
@@ -291,10 +325,8 @@ fn a_circle_of_imports_is_shown() {
 
 #[test]
 fn faults_inside_imports_tell_who_imported_them() {
-    let files = [
-        ("a.scene", "import \"b.scene\" as b\nb.f(0)"),
-        ("b.scene", "fn f(n) = [1 / n]\nlet broken = none"),
-    ];
+    let files =
+        [("a.scene", "import \"b.scene\" as b\nb.f(0)"), ("b.scene", "fn f(n) = [1 / n]\nlet broken = none")];
     let mut session = session(&files, Options::default());
     let found = session.evaluate_file(Path::new("a.scene")).diagnostics;
     assert_eq!(codes(&found), ["E0207", "E0101"]);
@@ -367,10 +399,7 @@ const FUNCTIONS: &[(&str, &str)] = &[
     ("", "p => sum([p.x * i for i in 0..4])"),
     ("", "p => fold([p.x, p.y, p.z], 0, (a, b) => a * 0.5 + b)"),
     ("", "p => sum(map([1, 2, 3], i => sin(p.x * i)))"),
-    (
-        "fn f(p) { var s = 0  for i in 0..40 { s = s + sin(p.x * i) / (i + 1) }  return s }",
-        "f",
-    ),
+    ("fn f(p) { var s = 0  for i in 0..40 { s = s + sin(p.x * i) / (i + 1) }  return s }", "f"),
     (
         "fn f(p) {\n var a = p.x\n var n = 0\n while n < 30 && a * a < 4 { a = a * a + p.y\n n = n + 1 }\n return <a, n, 0> / 100 }",
         "f",
@@ -387,10 +416,7 @@ const FUNCTIONS: &[(&str, &str)] = &[
         "fn f(p) { var s = 0  for i in 0..50 { var t = p.x  if i > 10 { t = t + 1 }  t = t * 2  s = s + t  if s > 60 { return s } }  return -s }",
         "f",
     ),
-    (
-        "fn f(p) { let scale = 2  fn inner(t) = t * scale + p.y  return inner(p.x) }",
-        "f",
-    ),
+    ("fn f(p) { let scale = 2  fn inner(t) = t * scale + p.y  return inner(p.x) }", "f"),
     ("let made = [c => q => q.x * c, c => q => q.y + c]", "made[1](0.5)"),
 ];
 
@@ -403,7 +429,9 @@ fn compiled_functions_give_the_bits_of_the_evaluator() {
             let n = tape.field.n_outputs();
             tape.field.eval(&p, &mut out[..n]).unwrap_or_else(|f| panic!("{function} at {p:?}: {f:?}"));
             let [x, y, z] = p;
-            let text = format!("{definitions}\nlet the_function = {function}\nlet result = the_function(<{x}, {y}, {z}>)");
+            let text = format!(
+                "{definitions}\nlet the_function = {function}\nlet result = the_function(<{x}, {y}, {z}>)"
+            );
             let mut session = session(&[("a.scene", &text)], Options::default());
             let (answer, found) = session.evaluate_expression("result", Some(Path::new("a.scene")));
             let expected = match answer {

@@ -77,18 +77,27 @@ impl<'p> Evaluator<'p> {
         if out.failed {
             excuse(block.kind, block.kind_span, &mut out);
         }
-        kinds::make(
-            self,
-            Block {
-                kind: block.kind,
-                span: block.span,
-                kind_span: block.kind_span,
-                label: block.label.as_ref().map(|(name, span, _)| ((**name).into(), *span)),
-                given: out.given,
-                children: out.nodes,
-                poisoned: out.poisoned,
-            },
-        )
+        let made = Block {
+            kind: block.kind,
+            span: block.span,
+            kind_span: block.kind_span,
+            label: block.label.as_ref().map(|(name, span, _)| ((**name).into(), *span)),
+            given: out.given,
+            children: out.nodes,
+            poisoned: out.poisoned,
+        };
+        self.make(made)
+    }
+
+    /// A block's value by its kind, and the guard on what it holds.
+    fn make(&mut self, block: Block) -> Outcome {
+        let span = block.span;
+        let nested = !block.children.is_empty();
+        let value = kinds::make(self, block)?;
+        if nested {
+            self.check_nesting(&value, span)?;
+        }
+        Ok(value)
     }
 
     /// The value of a function's body without `return`: a group where it placed anything, else its properties.
@@ -103,18 +112,15 @@ impl<'p> Evaluator<'p> {
     }
 
     fn group(&mut self, out: Produced, span: Span) -> Outcome {
-        kinds::make(
-            self,
-            Block {
-                kind: kinds::group(),
-                span,
-                kind_span: span,
-                label: None,
-                given: out.given,
-                children: out.nodes,
-                poisoned: Vec::new(),
-            },
-        )
+        self.make(Block {
+            kind: kinds::group(),
+            span,
+            kind_span: span,
+            label: None,
+            given: out.given,
+            children: out.nodes,
+            poisoned: Vec::new(),
+        })
     }
 
     pub(super) fn with(&mut self, with: &'p With, span: Span) -> Outcome {
@@ -135,7 +141,11 @@ impl<'p> Evaluator<'p> {
                 properties.append(&mut out.given);
                 Ok(Value::Fragment(Rc::new(Fragment { properties })))
             }
-            base => kinds::with::apply(self, base, with.base.span, out.given, out.nodes, span),
+            base => {
+                let value = kinds::with::apply(self, base, with.base.span, out.given, out.nodes, span)?;
+                self.check_nesting(&value, span)?;
+                Ok(value)
+            }
         }
     }
 }

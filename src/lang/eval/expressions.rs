@@ -92,7 +92,11 @@ impl<'p> Evaluator<'p> {
 
     #[cold]
     fn unset(&mut self, access: Access, span: Span) -> Reported {
-        let said = Diagnostic::new(Code::UsedBeforeSet, span, "this name has no value yet")
+        let name = match access {
+            Access::Global(slot) => format!("`{}`", self.program.globals[slot as usize].0),
+            Access::Local(_) | Access::Captured(_) | Access::Sibling(_) => "this name".into(),
+        };
+        let said = Diagnostic::new(Code::UsedBeforeSet, span, format!("{name} has no value yet"))
             .label("used before its item has run")
             .hint("items are evaluated in order: call the function after the definitions that it uses");
         let said = match access {
@@ -201,6 +205,9 @@ impl<'p> Evaluator<'p> {
             let slot = self.base + c.slot as usize;
             self.stack[slot] = Slot::Value(element);
             match self.comprehended(c) {
+                Ok(Some(_)) if values.len() >= self.run.limits.list => {
+                    return Err(self.list_too_long(values.len() + 1, span));
+                }
                 Ok(Some(value)) => values.push(value),
                 Ok(None) => {}
                 Err(reported) => {
@@ -236,7 +243,10 @@ impl<'p> Evaluator<'p> {
             match part {
                 TextPart::Literal(literal) => text.push_str(literal),
                 TextPart::Value(e) => match self.expr(e) {
-                    Ok(value) => text.push_str(&display::interpolated(&value)),
+                    Ok(value) => {
+                        text.push_str(&display::interpolated(&value));
+                        self.reserve_list(text.len() / size_of::<Value>(), span)?;
+                    }
                     Err(reported) => outcome = Err(reported),
                 },
             }

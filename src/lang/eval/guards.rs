@@ -1,10 +1,11 @@
 //! Guards against scenes that would never end or need more than the machine has.
 
 use super::Evaluator;
-use crate::diag::{Code, Span};
+use crate::diag::{Code, Diagnostic, Span};
 use crate::lang::limits::{Limits, exceeded};
 use crate::lang::table::{Context, Outcome, Reported};
 use crate::lang::value::{Value, memory};
+use crate::scene::{Node, Shape};
 
 /// What is left of each guard.
 pub(super) struct Guards {
@@ -14,6 +15,9 @@ pub(super) struct Guards {
     /// The address below which the stack may not grow.
     floor: usize,
 }
+
+/// Groups inside groups, at most: later stages follow them by recursion, on stacks that are not sized for it.
+const DEEPEST_GROUP: u32 = 1000;
 
 /// Stack that is kept free below the deepest call for what one call may nest: per level of brackets.
 const STACK_PER_LEVEL: usize = 8 << 10;
@@ -80,7 +84,7 @@ impl Evaluator<'_> {
         let depth = self.calls.len();
         let message = format!("calls are nested {depth} deep, and the stack ends");
         self.fail(
-            crate::diag::Diagnostic::new(Code::CallDepth, span, message)
+            Diagnostic::new(Code::CallDepth, span, message)
                 .hint("nest fewer blocks and choices inside the function that calls itself, or use a loop"),
         )
     }
@@ -107,12 +111,45 @@ impl Evaluator<'_> {
         self.fail(exceeded(Code::MemoryLimit, span, message, "memory", limit).label("more is asked for here"))
     }
 
+    #[cold]
+    pub(super) fn list_too_long(&mut self, elements: usize, span: Span) -> Reported {
+        let limit = self.run.limits.list as u64;
+        let message = format!("a list grows to {elements} elements");
+        self.fail(exceeded(Code::ListLimit, span, message, "list", limit))
+    }
+
+    /// Refuses groups nested beyond what every later stage can follow. `span` is the block's.
+    pub(super) fn check_nesting(&mut self, value: &Value, span: Span) -> Outcome<()> {
+        let Value::Object(object) = value else { return Ok(()) };
+        let Shape::Group(children) = &object.shape else { return Ok(()) };
+        let depth = 1 + children.iter().map(|node| self.depth_of(node)).max().unwrap_or(0);
+        if depth > DEEPEST_GROUP {
+            let message = format!("groups are nested {depth} deep");
+            let said = Diagnostic::new(Code::TooDeep, span, message)
+                .label(format!("at most {DEEPEST_GROUP} are followed"))
+                .hint("place the objects beside one another instead of each inside the last");
+            return Err(self.fail(said));
+        }
+        if depth > 1 {
+            self.depths.insert(children.as_ptr(), depth);
+        } else if !self.depths.is_empty() {
+            self.depths.remove(&children.as_ptr());
+        }
+        Ok(())
+    }
+
+    fn depth_of(&self, node: &Node) -> u32 {
+        let Node::Object(object) = node else { return 0 };
+        match &object.shape {
+            Shape::Group(children) => self.depths.get(&children.as_ptr()).copied().unwrap_or(1),
+            _ => 0,
+        }
+    }
+
     /// Counts the elements of a list that is about to be made, or to grow to this length.
     pub(super) fn reserve_list(&mut self, elements: usize, span: Span) -> Outcome<()> {
-        let limit = self.run.limits.list;
-        if elements > limit {
-            let message = format!("a list of {elements} elements");
-            return Err(self.fail(exceeded(Code::ListLimit, span, message, "list", limit as u64)));
+        if elements > self.run.limits.list {
+            return Err(self.list_too_long(elements, span));
         }
         self.check_memory((elements * size_of::<Value>()) as u64, span)
     }

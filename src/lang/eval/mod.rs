@@ -30,6 +30,7 @@ use crate::scene::assets::Loader;
 use crate::scene::{Camera, Node, RenderSettings, Scene};
 use guards::Guards;
 use slots::{Captured, Slot};
+use std::collections::HashMap;
 use std::rc::Rc;
 
 /// What a run is given.
@@ -143,6 +144,8 @@ struct Evaluator<'p> {
     units_done: Vec<bool>,
     calls: Vec<Call>,
     returned: Option<Outcome>,
+    /// How deep groups of groups are nested, by the address of their children.
+    depths: HashMap<*const Node, u32>,
     /// A value that the fast path of numbers could not carry.
     spilled: Outcome,
     top: Top,
@@ -165,6 +168,7 @@ impl<'p> Evaluator<'p> {
             units_done: vec![false; run.program.units.len()],
             calls: Vec::new(),
             returned: None,
+            depths: HashMap::new(),
             spilled: Err(Reported),
             top: Top::default(),
             guards: Guards::new(&run.limits, run.stack),

@@ -14,7 +14,7 @@ use crate::syntax::ast;
 impl<'a> Resolver<'a> {
     /// A file's items with those of its plain imports in their places, each file once in a unit.
     pub(super) fn flatten_file(&mut self, file: FileId) -> Vec<&'a ast::Item> {
-        self.included.insert(file);
+        self.included.push(file);
         let files = self.files;
         self.flatten(&files.files[file.0].tree.items)
     }
@@ -38,10 +38,12 @@ impl<'a> Resolver<'a> {
 
     /// Items in a scope of their own.
     pub(super) fn body(&mut self, items: &'a [ast::Item], place: Place) -> Body {
+        let n_included = self.included.len();
         let items = self.flatten(items);
         self.scopes.open(items, false);
         let body = self.scope_items(place);
         self.scopes.close();
+        self.included.truncate(n_included);
         body
     }
 

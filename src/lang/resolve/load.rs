@@ -45,6 +45,11 @@ impl Files {
         frames
     }
 
+    /// Frees the syntax trees: once names are resolved nothing needs them.
+    pub fn forget_trees(&mut self) {
+        self.files.iter_mut().for_each(|file| file.tree.items = Vec::new());
+    }
+
     /// A path as written at a place, joined to the folder of the file it stands in.
     pub fn join(&self, written: &str, at: Span) -> PathBuf {
         let folder = self.paths.get(&at.source).and_then(|p| p.parent());
@@ -211,31 +216,82 @@ fn normal(path: &Path) -> PathBuf {
     out
 }
 
-/// The imports among items, at any depth of blocks, choices, loops and function bodies, in source order. Those inside
-/// expressions' blocks are found too.
+/// The imports among items, at any depth, in source order.
 fn collect_imports(items: &[ast::Item], found: &mut Vec<ast::Import>) {
     for item in items {
         match &item.kind {
             ast::ItemKind::Import(import) => found.push((**import).clone()),
             ast::ItemKind::Block(block) => collect_imports(&block.items, found),
             ast::ItemKind::Function(function) => {
-                if let ast::Body::Items(items) = &function.body {
-                    collect_imports(items, found);
+                function.parameters.iter().filter_map(|p| p.default.as_ref()).for_each(|e| within(e, found));
+                match &function.body {
+                    ast::Body::Items(items) => collect_imports(items, found),
+                    ast::Body::Expr(e) => within(e, found),
                 }
             }
             ast::ItemKind::If(choice) => {
-                choice.arms.iter().for_each(|(_, items)| collect_imports(items, found));
+                for (condition, items) in &choice.arms {
+                    within(condition, found);
+                    collect_imports(items, found);
+                }
                 choice.otherwise.iter().for_each(|items| collect_imports(items, found));
             }
-            ast::ItemKind::For(turns) => collect_imports(&turns.items, found),
-            ast::ItemKind::While(turns) => collect_imports(&turns.items, found),
-            ast::ItemKind::Property(_)
-            | ast::ItemKind::Placement(_)
-            | ast::ItemKind::Let(..)
-            | ast::ItemKind::Var(..)
-            | ast::ItemKind::Assign(..)
-            | ast::ItemKind::Return(_)
-            | ast::ItemKind::Bad { .. } => {}
+            ast::ItemKind::For(turns) => {
+                within(&turns.list, found);
+                collect_imports(&turns.items, found);
+            }
+            ast::ItemKind::While(turns) => {
+                within(&turns.condition, found);
+                collect_imports(&turns.items, found);
+            }
+            ast::ItemKind::Property(property) => property.values.iter().for_each(|e| within(e, found)),
+            ast::ItemKind::Placement(e) => within(e, found),
+            ast::ItemKind::Let(_, e) | ast::ItemKind::Var(_, e) | ast::ItemKind::Assign(_, e) => {
+                within(e, found)
+            }
+            ast::ItemKind::Return(e) => e.iter().for_each(|e| within(e, found)),
+            ast::ItemKind::Bad { .. } => {}
         }
+    }
+}
+
+/// The imports among the items of an expression's blocks.
+fn within(e: &ast::Expr, found: &mut Vec<ast::Import>) {
+    match &e.kind {
+        ast::ExprKind::Block(block) => collect_imports(&block.items, found),
+        ast::ExprKind::With(with) => {
+            within(&with.base, found);
+            collect_imports(&with.items, found);
+        }
+        ast::ExprKind::Vector(list) | ast::ExprKind::List(list) => list.iter().for_each(|e| within(e, found)),
+        ast::ExprKind::Comprehension(c) => {
+            [&c.value, &c.list].into_iter().chain(&c.condition).for_each(|e| within(e, found));
+        }
+        ast::ExprKind::Unary(_, e) | ast::ExprKind::Field(e, _) => within(e, found),
+        ast::ExprKind::Binary(_, pair, _) | ast::ExprKind::Index(pair) => {
+            within(&pair.0, found);
+            within(&pair.1, found);
+        }
+        ast::ExprKind::Choice(three) => {
+            [&three.0, &three.1, &three.2].into_iter().for_each(|e| within(e, found))
+        }
+        ast::ExprKind::Range(range) => {
+            [&range.start, &range.end].into_iter().chain(&range.step).for_each(|e| within(e, found));
+        }
+        ast::ExprKind::Call(call) => {
+            within(&call.callee, found);
+            call.arguments.iter().for_each(|a| within(&a.value, found));
+        }
+        ast::ExprKind::Lambda(lambda) => within(&lambda.body, found),
+        ast::ExprKind::Text(parts) => parts.iter().for_each(|part| match part {
+            ast::TextPart::Value(e) => within(e, found),
+            ast::TextPart::Literal(_) => {}
+        }),
+        ast::ExprKind::Number(_)
+        | ast::ExprKind::Bool(_)
+        | ast::ExprKind::Colour(_)
+        | ast::ExprKind::Name(_)
+        | ast::ExprKind::VectorLiteral { .. }
+        | ast::ExprKind::Bad => {}
     }
 }

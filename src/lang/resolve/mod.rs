@@ -51,7 +51,7 @@ pub fn resolve<'a>(
         words: HashMap::new(),
         units: HashMap::new(),
         exports: HashMap::new(),
-        included: HashSet::new(),
+        included: Vec::new(),
         unknown_names: false,
         at_root: true,
         used_settings: HashSet::new(),
@@ -101,7 +101,8 @@ struct Resolver<'a> {
     words: HashMap<&'a str, Word>,
     units: HashMap<FileId, UnitId>,
     exports: HashMap<UnitId, Exports>,
-    included: HashSet<FileId>,
+    /// Files whose names are visible here by plain imports, outermost first.
+    included: Vec<FileId>,
     /// An import failed, so that any name may be one of its names.
     unknown_names: bool,
     /// The root's unit is being resolved, not one imported with `as`.
