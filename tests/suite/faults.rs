@@ -23,7 +23,7 @@ const FAULTS: &[Fault] = &[
     fault("let a# = 1 + * 2", Code::Syntax, 0),
     fault("let = 4", Code::Syntax, 0),
     fault("sphere { center <0, 1 0> }", Code::Syntax, 0),
-    fault("group {\n  sphere { radius }\n}", Code::WrongArity, 1),
+    fault("group {\n  sphere { radius }\n}", Code::BadProperty, 1),
     fault("let a# = 0 < 1 < 2", Code::ChainedComparison, 0),
     fault("sphare { radius 1 }", Code::UnknownKind, 0),
     fault("let sphere = 3", Code::ReservedName, 0),
