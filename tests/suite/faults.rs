@@ -116,7 +116,7 @@ fn found(text: &str) -> (Vec<(Code, usize)>, String) {
     let line = |d: &ogee::diag::Diagnostic| d.span.map_or(0, |s| session.sources.line_column(s.source, s.start).line);
     let mut list: Vec<_> = evaluated.diagnostics.iter().map(|d| (d.code, line(d))).collect();
     list.sort_by_key(|(code, line)| (*line, *code));
-    (list, ogee::diag::render::human(&evaluated.diagnostics, &session.sources, false))
+    (list, ogee::diag::render::human(&evaluated.diagnostics, &session.sources, ogee::diag::render::Style::plain(100)))
 }
 
 #[test]

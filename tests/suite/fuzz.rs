@@ -107,7 +107,7 @@ fn exercise(text: &str) {
             let _ = session.sources.snippet(span);
         }
     }
-    let _ = ogee::diag::render::human(&evaluated.diagnostics, &session.sources, false);
+    let _ = ogee::diag::render::human(&evaluated.diagnostics, &session.sources, ogee::diag::render::Style::plain(100));
     if let Ok(laid_out) = ogee::syntax::format::format(text) {
         let again = ogee::syntax::format::format(&laid_out);
         assert_eq!(again.as_deref().ok(), Some(laid_out.as_str()), "formatting twice changes the text");

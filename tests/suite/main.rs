@@ -3,6 +3,9 @@
 mod command;
 mod diagnostics;
 mod intersection;
+mod faults;
+mod fuzz;
+mod golden;
 mod language;
 mod layers;
 mod meshes;
