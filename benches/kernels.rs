@@ -14,7 +14,8 @@ use std::hint::black_box;
 fn flat_scene(n: usize) -> String {
     let mut text = String::new();
     for i in 1..=n {
-        let [x, y, z] = [0.754_877_666, 0.569_840_291, 0.430_159_709].map(|c| (i as f64 * c).fract() * 20.0 - 10.0);
+        let [x, y, z] =
+            [0.754_877_666, 0.569_840_291, 0.430_159_709].map(|c| (i as f64 * c).fract() * 20.0 - 10.0);
         let _ = writeln!(
             text,
             "sphere {{ center <{x:.6}, {y:.6}, {z:.6}>  radius 0.05  material {{ diffuse <0.8, 0.4, 0.3> }} }}"
@@ -36,12 +37,20 @@ fn parser(c: &mut Criterion) {
 fn evaluator(c: &mut Criterion) {
     let mut group = c.benchmark_group("evaluate");
     let scenes = [
-        ("100,000 turns of arithmetic", "var s = 0\nfor i in 1..=100000 { s = s + sin(i * 0.001) * 0.5 + sqrt(i) / (i + 1) }"),
+        (
+            "100,000 turns of arithmetic",
+            "var s = 0\nfor i in 1..=100000 { s = s + sin(i * 0.001) * 0.5 + sqrt(i) / (i + 1) }",
+        ),
         ("100,000 calls", "fn acc(a, b) = a * 0.5 + b\nvar s = 0\nfor i in 1..=100000 { s = acc(s, i) }"),
-        ("10,000 spheres", "for i in 0..10000 { sphere { center <i, 0, 0>  radius 0.5  material { diffuse <0.1, 0.2, 0.3> } } }"),
+        (
+            "10,000 spheres",
+            "for i in 0..10000 { sphere { center <i, 0, 0>  radius 0.5  material { diffuse <0.1, 0.2, 0.3> } } }",
+        ),
     ];
     for (name, text) in scenes {
-        group.bench_function(name, |b| b.iter(|| Session::default().evaluate_text("bench.scene", black_box(text))));
+        group.bench_function(name, |b| {
+            b.iter(|| Session::default().evaluate_text("bench.scene", black_box(text)))
+        });
     }
     group.finish();
 }

@@ -122,8 +122,10 @@ pub fn faults(film: &Film) -> Vec<Diagnostic> {
 
 fn not_finite(fault: &Fault) -> Diagnostic {
     let [x, y] = fault.pixel;
-    let samples = if fault.count == 1 { "1 sample is".to_owned() } else { format!("{} samples are", fault.count) };
-    let message = format!("{samples} infinite or not a number, and left out; the first is of pixel ({x}, {y})");
+    let samples =
+        if fault.count == 1 { "1 sample is".to_owned() } else { format!("{} samples are", fault.count) };
+    let message =
+        format!("{samples} infinite or not a number, and left out; the first is of pixel ({x}, {y})");
     Diagnostic::new(Code::NonFiniteSample, fault.span, message)
         .label("seen there")
         .hint("look for a light or a material with a number that is far too large")

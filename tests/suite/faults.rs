@@ -23,7 +23,7 @@ const FAULTS: &[Fault] = &[
     fault("let a# = 1 + * 2", Code::Syntax, 0),
     fault("let = 4", Code::Syntax, 0),
     fault("sphere { center <0, 1 0> }", Code::Syntax, 0),
-    fault("group {\n  sphere { radius }\n}", Code::BadProperty, 1),
+    fault("group {\n  sphere { radius }\n}", Code::WrongArity, 1),
     fault("let a# = 0 < 1 < 2", Code::ChainedComparison, 0),
     fault("sphare { radius 1 }", Code::UnknownKind, 0),
     fault("let sphere = 3", Code::ReservedName, 0),
@@ -116,7 +116,7 @@ fn found(text: &str) -> (Vec<(Code, usize)>, String) {
     let line = |d: &ogee::diag::Diagnostic| d.span.map_or(0, |s| session.sources.line_column(s.source, s.start).line);
     let mut list: Vec<_> = evaluated.diagnostics.iter().map(|d| (d.code, line(d))).collect();
     list.sort_by_key(|(code, line)| (*line, *code));
-    (list, ogee::diag::render::human(&evaluated.diagnostics, &session.sources, ogee::diag::render::Style::plain(100)))
+    (list, ogee::diag::render::human(&evaluated.diagnostics, &session.sources, false))
 }
 
 #[test]

@@ -28,12 +28,85 @@ impl Random {
 
 /// Pieces that have broken parsers before.
 const PIECES: &[&str] = &[
-    "{", "}", "(", ")", "[", "]", "<", ">", ",", ";", "..", "..=", "=>", "=", "==", "\"", "\"{", "}\"", "/*", "*/", "//", "\\u{110000}",
-    "#", "#ggg", "#cc3311", "1e999", "-1e308", "1e-320", "0/0", "99999999999999999999", ".", "..5", "0x", "é", "\u{0}", "\r", "\t", "inf",
-    "-", "^", "with", "with {", "fn f(a) = f(a)\nf(1)", "while true {", "for i in 0..1e18 {", "if", "else", "let", "let x = x", "var", "return",
-    "import \"a.scene\"", "step 0", "step -1", "sphere {", "group {", "material {", "camera {", "[i for i in 0..1e12]", "p => p",
-    "(u, v) => u", "checker(checker(1, 0), 1)", "joint j {", "skin {", "a.b.c.d", "x[0][0]", "f(f(f(", "radius", "mesh { file \"/dev/zero\" }",
-    "translate", "rotate <", "scale 0", "matrix 1, 2, 3", "trace(", "roots(", "range(0, 1e18)", "linspace(0, 1, 1e15)", "str(", "assert(false)",
+    "{",
+    "}",
+    "(",
+    ")",
+    "[",
+    "]",
+    "<",
+    ">",
+    ",",
+    ";",
+    "..",
+    "..=",
+    "=>",
+    "=",
+    "==",
+    "\"",
+    "\"{",
+    "}\"",
+    "/*",
+    "*/",
+    "//",
+    "\\u{110000}",
+    "#",
+    "#ggg",
+    "#cc3311",
+    "1e999",
+    "-1e308",
+    "1e-320",
+    "0/0",
+    "99999999999999999999",
+    ".",
+    "..5",
+    "0x",
+    "é",
+    "\u{0}",
+    "\r",
+    "\t",
+    "inf",
+    "-",
+    "^",
+    "with",
+    "with {",
+    "fn f(a) = f(a)\nf(1)",
+    "while true {",
+    "for i in 0..1e18 {",
+    "if",
+    "else",
+    "let",
+    "let x = x",
+    "var",
+    "return",
+    "import \"a.scene\"",
+    "step 0",
+    "step -1",
+    "sphere {",
+    "group {",
+    "material {",
+    "camera {",
+    "[i for i in 0..1e12]",
+    "p => p",
+    "(u, v) => u",
+    "checker(checker(1, 0), 1)",
+    "joint j {",
+    "skin {",
+    "a.b.c.d",
+    "x[0][0]",
+    "f(f(f(",
+    "radius",
+    "mesh { file \"/dev/zero\" }",
+    "translate",
+    "rotate <",
+    "scale 0",
+    "matrix 1, 2, 3",
+    "trace(",
+    "roots(",
+    "range(0, 1e18)",
+    "linspace(0, 1, 1e15)",
+    "str(",
+    "assert(false)",
 ];
 
 fn corpus() -> Vec<String> {
@@ -107,7 +180,11 @@ fn exercise(text: &str) {
             let _ = session.sources.snippet(span);
         }
     }
-    let _ = ogee::diag::render::human(&evaluated.diagnostics, &session.sources, ogee::diag::render::Style::plain(100));
+    let _ = ogee::diag::render::human(
+        &evaluated.diagnostics,
+        &session.sources,
+        ogee::diag::render::Style::plain(100),
+    );
     if let Ok(laid_out) = ogee::syntax::format::format(text) {
         let again = ogee::syntax::format::format(&laid_out);
         assert_eq!(again.as_deref().ok(), Some(laid_out.as_str()), "formatting twice changes the text");
@@ -145,18 +222,40 @@ fn fuzz_mutated_examples_never_panic_or_hang() {
 
 #[test]
 fn fuzz_a_hundred_thousand_open_brackets_are_an_error_and_no_crash() {
-    for bracket in ["(", "[", "<", "{", "-", "!", "sphere {", "f(", "a[", "\"{", "/*", "p => ", "1 + (", "1 ? ", "if true {", "x ^ "] {
+    for bracket in [
+        "(",
+        "[",
+        "<",
+        "{",
+        "-",
+        "!",
+        "sphere {",
+        "f(",
+        "a[",
+        "\"{",
+        "/*",
+        "p => ",
+        "1 + (",
+        "1 ? ",
+        "if true {",
+        "x ^ ",
+    ] {
         let text = format!("let a = {}", bracket.repeat(100_000));
         let began = Instant::now();
         let found = Session::new(tight(), Arc::new(NoFiles)).evaluate_text("deep.scene", &text).diagnostics;
-        assert!(found.iter().any(|d| d.severity == ogee::diag::Severity::Error), "nothing is said about 100000 × {bracket}");
+        assert!(
+            found.iter().any(|d| d.severity == ogee::diag::Severity::Error),
+            "nothing is said about 100000 × {bracket}"
+        );
         assert!(began.elapsed() < PATIENCE, "100000 × {bracket} takes {:?}", began.elapsed());
     }
 }
 
 #[test]
 fn fuzz_long_chains_are_read_or_refused_without_a_crash() {
-    for link in [" + 1", " * 2", " && true", ".x", "[0]", "(0)", " == 1", " ? 1 : 1", " with { }", " ^ 1", ", 1"] {
+    for link in
+        [" + 1", " * 2", " && true", ".x", "[0]", "(0)", " == 1", " ? 1 : 1", " with { }", " ^ 1", ", 1"]
+    {
         let text = format!("let a = 1{}\n", link.repeat(100_000));
         let began = Instant::now();
         let _ = Session::new(tight(), Arc::new(NoFiles)).evaluate_text("long.scene", &text);

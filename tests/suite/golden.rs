@@ -29,5 +29,9 @@ fn every_example_checks_without_a_word() {
     let mut arguments = vec!["check"];
     arguments.extend(examples.iter().map(String::as_str));
     let output = ogee(&arguments);
-    assert!(output.status.success() && output.stderr.is_empty(), "{}", String::from_utf8_lossy(&output.stderr));
+    assert!(
+        output.status.success() && output.stderr.is_empty(),
+        "{}",
+        String::from_utf8_lossy(&output.stderr)
+    );
 }

@@ -2,14 +2,14 @@
 
 mod command;
 mod diagnostics;
-mod intersection;
-mod faults;
 mod fuzz;
 mod golden;
+mod intersection;
 mod language;
 mod layers;
 mod meshes;
 mod pictures;
+mod planted;
 mod radiometry;
 mod run;
 mod stage;

@@ -132,7 +132,8 @@ impl<'a> Builder<'a> {
         *tokens = ahead;
         let start = self.span(&head);
         let parameters = self.lambda_parameters(head);
-        let body = self.expression(body);
+        let bad = Expr { kind: ExprKind::Bad, span: self.span(&body) };
+        let body = self.nested(bad.span, |builder| builder.expression(body)).unwrap_or(bad);
         let span = start.to(body.span);
         Some(Expr { kind: ExprKind::Lambda(Box::new(Lambda { parameters, body })), span })
     }
