@@ -27,7 +27,9 @@ pub enum Misfit {
 /// Whether a value is of a type, bounds aside.
 pub fn fits(ctx: &dyn Context, kind: Type, value: &Value) -> bool {
     match kind {
-        Type::Number { .. } | Type::Positive | Type::Integer { .. } => matches!(value, Value::Number(_)),
+        Type::Number { .. } | Type::Positive | Type::Integer { .. } | Type::Factor => {
+            matches!(value, Value::Number(_))
+        }
         Type::Bool => match value {
             Value::Bool(_) => true,
             Value::Word(word) => matches!(&**word, "on" | "off"),
@@ -35,7 +37,7 @@ pub fn fits(ctx: &dyn Context, kind: Type, value: &Value) -> bool {
         },
         Type::Text => matches!(value, Value::Text(_)),
         Type::Vector2 => matches!(value, Value::Vector2(_)),
-        Type::Vector3 | Type::Direction => matches!(value, Value::Vector3(_)),
+        Type::Vector3 | Type::Direction | Type::Factors => matches!(value, Value::Vector3(_)),
         Type::Vector4 => matches!(value, Value::Vector4(_)),
         Type::Colour => matches!(value, Value::Vector3(_) | Value::Number(_)),
         Type::Texture => matches!(value, Value::Vector3(_)) || fits_number_texture(ctx, value),
@@ -71,6 +73,8 @@ pub fn coerce(ctx: &mut dyn Context, kind: Type, value: &Value, span: Span) -> R
         (Type::Integer { min }, Value::Number(x)) => integer(*x, min),
         (Type::Bool, Value::Word(word)) => Ok(Value::Bool(&**word == "on")),
         (Type::Direction, Value::Vector3(v)) => direction(*v),
+        (Type::Factor, Value::Number(x)) if !invertible(*x) => Err(zero_factor()),
+        (Type::Factors, Value::Vector3(v)) if !v.to_array().into_iter().all(invertible) => Err(zero_factor()),
         (Type::Colour, Value::Number(x)) => colour(Rgb::splat(*x)),
         (Type::Colour, Value::Vector3(v)) => colour(*v),
         (Type::Texture, Value::Vector3(v)) => colour(*v),
@@ -192,6 +196,19 @@ fn integer(x: f64, min: i64) -> Result<Value, Misfit> {
     Err(Misfit::Bounds { expected, hint })
 }
 
+/// Not 0, nor so near to it that 1/x is infinite.
+fn invertible(x: f64) -> bool {
+    x != 0.0 && x.recip().is_finite()
+}
+
+fn zero_factor() -> Misfit {
+    Misfit::Bounds {
+        expected: "other than 0 on every axis".into(),
+        hint: "leave an axis as it is with the factor 1, as in `scale <2, 1, 2>`; flat things are `disc` and `rect`"
+            .into(),
+    }
+}
+
 fn direction(v: DVec3) -> Result<Value, Misfit> {
     unit(v).map(Value::Vector3).ok_or_else(|| Misfit::Bounds {
         expected: "a direction, a vector that is not 0".into(),
@@ -213,7 +230,7 @@ fn colour(c: Rgb) -> Result<Value, Misfit> {
 pub fn dimension(kind: Type) -> Option<usize> {
     match kind {
         Type::Vector2 => Some(2),
-        Type::Vector3 | Type::Direction | Type::Colour | Type::Texture => Some(3),
+        Type::Vector3 | Type::Direction | Type::Factors | Type::Colour | Type::Texture => Some(3),
         Type::Vector4 => Some(4),
         _ => None,
     }
@@ -287,6 +304,8 @@ pub fn words(kind: Type) -> String {
         Type::Vector3 => "a 3-vector".into(),
         Type::Vector4 => "a 4-vector".into(),
         Type::Direction => "a direction (a 3-vector other than 0)".into(),
+        Type::Factor => "a number other than 0".into(),
+        Type::Factors => "a 3-vector without 0".into(),
         Type::Colour => "a colour or a number".into(),
         Type::Texture => "a colour, a number, a pattern or a function".into(),
         Type::NumberTexture { min, max } if min == f64::MIN && max == f64::MAX => {
@@ -336,10 +355,11 @@ pub fn forms(property: &Property) -> String {
 /// A use of a property with likely values: `rotate <1, 1, 1>`.
 pub fn sample_use(property: &Property) -> String {
     let row = property.takes.iter().find(|row| !row.is_empty());
-    let values: Vec<String> = match (row, property.default) {
-        (Some(_), default) if !default.is_empty() && !default.contains(' ') => vec![default.to_string()],
-        (Some(row), _) => row.iter().map(|t| sample(*t)).collect(),
-        (None, _) => Vec::new(),
+    let telling = !matches!(property.default, "" | "0" | "<0, 0, 0>");
+    let values: Vec<String> = match row {
+        Some(_) if telling => vec![property.default.to_string()],
+        Some(row) => row.iter().map(|t| sample(*t)).collect(),
+        None => Vec::new(),
     };
     if values.is_empty() {
         property.name.to_string()
@@ -352,6 +372,8 @@ fn sample(kind: Type) -> String {
     match kind {
         Type::Number { min, max } | Type::NumberTexture { min, max } => number(1f64.clamp(min, max)),
         Type::Positive | Type::Any | Type::Unbuilt => "1".into(),
+        Type::Factor => "2".into(),
+        Type::Factors => "<2, 1, 2>".into(),
         Type::Integer { min } => format!("{}", min.max(1)),
         Type::Bool => "on".into(),
         Type::Text => "\"…\"".into(),
@@ -373,7 +395,7 @@ fn sample(kind: Type) -> String {
 pub fn remedy(name: &str, types: &[Type], value: &Value) -> Option<String> {
     let wanted = types.iter().find_map(|t| dimension(*t));
     let wants_number = types.iter().any(|t| {
-        matches!(t, Type::Number { .. } | Type::Positive | Type::Integer { .. } | Type::NumberTexture { .. })
+        matches!(t, Type::Number { .. } | Type::Positive | Type::Factor | Type::Integer { .. } | Type::NumberTexture { .. })
     });
     let wants_words = types.iter().any(|t| !t.words().is_empty());
     match value {

@@ -16,6 +16,7 @@ pub mod limits;
 #[cfg(test)]
 mod mock;
 mod range;
+pub mod reference;
 pub mod resolve;
 pub mod table;
 pub mod value;

@@ -197,6 +197,10 @@ pub enum Type {
     Vector4,
     /// A 3-vector that is not 0.
     Direction,
+    /// A number that is not 0.
+    Factor,
+    /// A 3-vector of which no component is 0.
+    Factors,
     /// Linear RGB or a grey.
     Colour,
     /// A colour, a number, a pattern, or a function of the point, of (u, v). Channels of at least 0.
@@ -303,6 +307,23 @@ impl Builtin {
     }
 }
 
+impl Builtin {
+    /// How it is called: `clamp(x, low = 0, high = 1)`, `min(a, b, …)`.
+    pub fn form(&self) -> String {
+        let one = |p: &Parameter| p.default.map_or(p.name.to_string(), |d| format!("{} = {d}", p.name));
+        let mut parameters: Vec<String> = self.parameters.iter().map(one).collect();
+        if self.variadic {
+            parameters.push("…".into());
+        }
+        format!("{}({})", self.name, parameters.join(", "))
+    }
+
+    /// Whether a call gives a value, and not only a warning that it is not built yet.
+    pub fn is_built(&self) -> bool {
+        !matches!(self.body, BuiltinBody::NotBuilt)
+    }
+}
+
 impl std::fmt::Debug for Builtin {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         write!(f, "builtin {}", self.name)
@@ -350,6 +371,8 @@ pub enum BuiltinBody {
     Numbers(ShapeOf, CallN),
     /// Anything else; arguments are in the order of the parameters, with defaults filled in and their places beside them.
     General(fn(&mut dyn Context, &Arguments<'_>) -> Outcome),
+    /// Nothing yet: a call is a warning, and what uses it is left out.
+    NotBuilt,
 }
 
 /// The arguments of a call of a builtin.

@@ -14,4 +14,5 @@ mod radiometry;
 mod run;
 mod stage;
 mod syntax;
+mod tables;
 mod textures;

@@ -81,15 +81,15 @@ pub static ALL: &[Builtin] = &[
     Builtin::new(
         "marble",
         TWO_OR,
-        General(|ctx, arguments| super::general::not_built(ctx, arguments, "marble")),
-        "Veins. Not built yet.",
+        NotBuilt,
+        "Veins.",
         ("marble(white, gray)", ""),
     ),
     Builtin::new(
         "wood",
         TWO_OR,
-        General(|ctx, arguments| super::general::not_built(ctx, arguments, "wood")),
-        "Rings about the y axis. Not built yet.",
+        NotBuilt,
+        "Rings about the y axis.",
         ("wood(maroon, olive)", ""),
     ),
 ];

@@ -2,9 +2,8 @@
 
 use super::read;
 use crate::diag::{Code, Diagnostic};
-use crate::lang::coerce;
 use crate::lang::table::{Context, Outcome, Property, Role, Type};
-use crate::lang::value::Given;
+use crate::lang::value::{Given, Value};
 use crate::math::Affine;
 use crate::scene::Object;
 use glam::{DMat3, DVec3};
@@ -22,7 +21,7 @@ pub static TRANSFORMS: &[Property] = &[
     .repeats(),
     Property::new(
         "scale",
-        &[&[Type::NUMBER], &[Type::Vector3]],
+        &[&[Type::Factor], &[Type::Factors]],
         "",
         "multiplies lengths from the origin, by one factor or one for each axis; no factor may be 0",
     )
@@ -141,7 +140,7 @@ fn one_transform(ctx: &mut dyn Context, g: &Given) -> Outcome<Option<Affine>> {
         ("translate", _) => Affine::translate(read::vector_of(value(0))),
         ("rotate", 1) => Affine::rotate_xyz(read::vector_of(value(0))),
         ("rotate", _) => Affine::rotate(read::vector_of(value(0)), read::number_of(value(1))),
-        ("scale", _) => return scale(ctx, g).map(Some),
+        ("scale", _) => Affine::scale(factors(value(0))),
         ("shear", _) => return shear(ctx, g).map(Some),
         ("matrix", _) => return matrix(ctx, g).map(Some),
         _ => return Ok(None),
@@ -149,22 +148,11 @@ fn one_transform(ctx: &mut dyn Context, g: &Given) -> Outcome<Option<Affine>> {
     Ok(Some(affine))
 }
 
-fn scale(ctx: &mut dyn Context, g: &Given) -> Outcome<Affine> {
-    let (value, span) = &g.values[0];
-    let factors = match value {
-        crate::lang::value::Value::Number(s) => DVec3::splat(*s),
+fn factors(value: &Value) -> DVec3 {
+    match value {
+        Value::Number(s) => DVec3::splat(*s),
         other => read::vector_of(other),
-    };
-    if factors.to_array().iter().all(|s| *s != 0.0 && s.recip().is_finite()) {
-        return Ok(Affine::scale(factors));
     }
-    let said = Diagnostic::new(
-        Code::BadProperty,
-        *span,
-        format!("`scale` by 0 leaves nothing: this is {}", coerce::shown(value)),
-    )
-    .hint("leave an axis as it is with the factor 1, as in `scale <2, 1, 2>`; for a flat thing use `disc`, `rect` or a small factor");
-    Err(ctx.fail(said))
 }
 
 /// p ↦ p + k (p·across) along, with both directions of unit length. Singular where 1 + k along·across is 0.

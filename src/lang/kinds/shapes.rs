@@ -267,20 +267,17 @@ fn parallel(a: DVec3, b: DVec3) -> bool {
 
 fn axis_box(ctx: &mut dyn Context, block: Block) -> Outcome {
     let (min, max) = (block.vector("min").expect("required"), block.vector("max").expect("required"));
-    let bad: Vec<&str> = ["x", "y", "z"]
-        .into_iter()
-        .enumerate()
-        .filter(|(i, _)| min[*i] >= max[*i])
-        .map(|(_, name)| name)
-        .collect();
+    let bad: Vec<usize> = (0..3).filter(|i| min[*i] >= max[*i]).collect();
     if let Some(first) = bad.first() {
-        let i = ["x", "y", "z"].iter().position(|name| name == first).expect("one of the three");
-        let flat = min[i] == max[i];
+        let flat = min[*first] == max[*first];
+        let each = |i: &usize| {
+            let axis = ["x", "y", "z"][*i];
+            format!("{} and {} in {axis}", coerce::number(min[*i]), coerce::number(max[*i]))
+        };
+        let found: Vec<String> = bad.iter().map(each).collect();
         let message = format!(
-            "a box needs `min` below `max` on each axis; in {} they are {} and {}",
-            bad.join(", "),
-            coerce::number(min[i]),
-            coerce::number(max[i])
+            "a box needs `min` below `max` on each axis, and they are {}",
+            coerce::listed(&found, "and")
         );
         let hint = if flat {
             "for a flat rectangle write `rect { center …  edges a, b }`".to_string()

@@ -137,7 +137,10 @@ mod building {
         assert_eq!(codes("plane", &[("normal", &[zero()])]), ["E0303"]);
         assert_eq!(codes("plane", &[("offset", &[n(1.0)]), ("through", &[zero()])]), ["E0305"]);
         assert_eq!(codes("box", &[("min", &[v(1.0, 0.0, 0.0)]), ("max", &[v(0.0, 1.0, 1.0)])]), ["E0604"]);
-        assert_eq!(codes("cylinder", &[("from", &[up.clone()]), ("to", &[up.clone()])]), ["E0604"]);
+        assert_eq!(
+            codes("cylinder", &[("from", std::slice::from_ref(&up)), ("to", std::slice::from_ref(&up))]),
+            ["E0604"]
+        );
         assert_eq!(
             codes("cone", &[("from", &[zero()]), ("to", &[up]), ("radii", &[n(0.0), n(0.0)])]),
             ["E0604"]
@@ -321,7 +324,7 @@ mod building {
         assert!(matches!(&tapered.shape, Shape::Cone(c) if c.radii == [1.0, 0.0]));
         let wrong = given(&[("radius", &[n(-1.0)]), ("scale", &[n(0.0)]), ("centre", &[n(0.0)])]);
         assert!(with::apply(&mut ctx, rod, span(0), wrong, Vec::new(), span(0)).is_err());
-        assert_eq!(ctx.codes().len(), 2, "{:?}", ctx.said);
+        assert_eq!(ctx.codes(), ["E0303", "E0301", "E0303"]);
     }
 
     #[test]
