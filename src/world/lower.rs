@@ -71,10 +71,19 @@ struct Lowering<'a> {
     meshes: Meshes,
 }
 
-/// Nodes on their way.
+/// Nodes on their way. Those of a group that nobody else holds are taken out of it one by one, so that they are freed as they go and
+/// a group of a group of … is never dropped in one recursion.
 enum Source {
     Owned(std::vec::IntoIter<Node>),
-    Shared(Arc<[Node]>, usize),
+    Group { nodes: Arc<[Node]>, next: usize, taken: Node },
+}
+
+impl Source {
+    fn group(nodes: Arc<[Node]>) -> Source {
+        let nowhere = Span::new(crate::diag::SourceId(0), 0, 0);
+        let taken = Node::Object(Arc::new(Object::new(Shape::Group(Arc::new([])), nowhere)));
+        Source::Group { nodes, next: 0, taken }
+    }
 }
 
 impl Iterator for Source {
@@ -83,9 +92,12 @@ impl Iterator for Source {
     fn next(&mut self) -> Option<Node> {
         match self {
             Source::Owned(nodes) => nodes.next(),
-            Source::Shared(nodes, at) => {
-                *at += 1;
-                nodes.get(*at - 1).cloned()
+            Source::Group { nodes, next, taken } => {
+                *next += 1;
+                match Arc::get_mut(nodes) {
+                    Some(own) => own.get_mut(*next - 1).map(|node| std::mem::replace(node, taken.clone())),
+                    None => nodes.get(*next - 1).cloned(),
+                }
             }
         }
     }
@@ -143,12 +155,11 @@ impl Lowering<'_> {
                 stack.pop();
                 continue;
             };
-            let around = around.clone();
             let inside = match node {
-                Node::Light(light) => self.light(&mut group, light, &around, depth),
+                Node::Light(light) => self.light(&mut group, light, around, depth),
                 Node::Object(object) => {
                     let object = Arc::try_unwrap(object).unwrap_or_else(|shared| (*shared).clone());
-                    self.object(&mut group, object, &around, depth)
+                    self.object(&mut group, object, around, depth)
                 }
             };
             stack.extend(inside);
@@ -195,7 +206,7 @@ impl Lowering<'_> {
                 let scope = group.open_scope(span, around.scope);
                 let Facts { material, hide, area, .. } = facts;
                 let transform = transform.map(|t| *t);
-                Some((Source::Shared(nodes, 0), Around { transform, material, hide, scope, area }))
+                Some((Source::group(nodes), Around { transform, material, hide, scope, area }))
             }
             Shape::Mesh(source) => {
                 let aggregate = self.mesh(source, span)?;
@@ -241,7 +252,7 @@ impl Lowering<'_> {
         if !self.may_nest(depth + 1, span) {
             return None;
         }
-        let group = self.group(Source::Shared(Arc::clone(nodes), 0), depth + 1);
+        let group = self.group(Source::group(Arc::clone(nodes)), depth + 1);
         let index = self.keep(Aggregate::Group(group));
         self.placed.insert(nodes.as_ptr(), (index, Arc::clone(nodes)));
         self.may_nest(self.heights[index as usize], span).then_some(index)

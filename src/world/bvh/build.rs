@@ -235,34 +235,37 @@ fn children(items: &mut [Item], part: Part) -> Vec<Part> {
     parts
 }
 
-/// Two halves of a part, its items partitioned; none where a leaf is cheaper.
+/// Two halves of a part, its items partitioned; none where a leaf is cheaper. `cost` is that of the split itself.
 fn split(items: &mut [Item], part: &Part, cost: f32) -> Option<(Part, Part)> {
     if items.len() < 2 {
         return None;
     }
     let middles = middles_of(items);
     let found = if part.depth < MAX_SAH_DEPTH { best_split(items, &middles) } else { None };
-    let left_count = match found {
+    let (left_count, [left, right]) = match found {
         Some(best) => {
             let leaf_cost = items.len() as f32 * part.bounds.area();
-            let split_cost = cost * part.bounds.area() + best.cost;
-            if items.len() <= MAX_LEAF && leaf_cost <= split_cost {
+            if items.len() <= MAX_LEAF && leaf_cost <= cost * part.bounds.area() + best.cost {
                 return None;
             }
-            partition(items, |item| best.bins.of(item.bounds.middle(best.axis)) < best.bin)
+            let is_left = |item: &Item| best.bins.of(item.bounds.middle(best.axis)) < best.bin;
+            (partition(items, is_left), best.bounds)
         }
         None if items.len() <= MAX_LEAF => return None,
-        None => halve(items, &middles),
+        None => {
+            let half = halve(items, &middles);
+            (half, [bounds_of_items(&items[..half]), bounds_of_items(&items[half..])])
+        }
     };
-    let half = |first: usize, items: &[Item]| Part {
+    let half = |first: usize, count: usize, bounds: Box32| Part {
         first,
-        count: items.len(),
-        bounds: bounds_of_items(items),
+        count,
+        bounds,
         depth: part.depth + 1,
         splittable: true,
     };
-    let (left, right) = items.split_at(left_count);
-    Some((half(part.first, left), half(part.first + left_count, right)))
+    let right_count = items.len() - left_count;
+    Some((half(part.first, left_count, left), half(part.first + left_count, right_count, right)))
 }
 
 /// The box around the items' (doubled) middles.
@@ -279,18 +282,37 @@ fn middles_of(items: &[Item]) -> Box32 {
 struct Bins {
     start: f32,
     per_length: f32,
+    last: usize,
 }
 
 impl Bins {
     /// None where the middles do not spread.
-    fn along(middles: &Box32, axis: usize) -> Option<Bins> {
+    fn along(middles: &Box32, axis: usize, count: usize) -> Option<Bins> {
         let extent = middles.max[axis] - middles.min[axis];
-        let per_length = BINS as f32 / extent;
-        (extent > 0.0 && per_length.is_finite()).then_some(Bins { start: middles.min[axis], per_length })
+        let per_length = count as f32 / extent;
+        let usable = extent > 0.0 && per_length.is_finite();
+        usable.then_some(Bins { start: middles.min[axis], per_length, last: count - 1 })
     }
 
+    #[inline(always)]
     fn of(&self, middle: f32) -> usize {
-        (((middle - self.start) * self.per_length) as usize).min(BINS - 1)
+        (((middle - self.start) * self.per_length) as usize).min(self.last)
+    }
+}
+
+/// What is in a bin.
+#[derive(Clone, Copy)]
+struct Content {
+    bounds: Box32,
+    count: u32,
+}
+
+impl Content {
+    const NONE: Content = Content { bounds: Box32::EMPTY, count: 0 };
+
+    fn add(&mut self, other: &Content) {
+        self.bounds.grow(&other.bounds);
+        self.count += other.count;
     }
 }
 
@@ -301,37 +323,43 @@ struct Best {
     bin: usize,
     /// Area times count, summed over both halves.
     cost: f32,
+    /// Of the halves.
+    bounds: [Box32; 2],
 }
 
-/// The cheapest split between bins over all axes; none where the middles do not spread.
+/// The cheapest split between bins over all axes; none where the middles do not spread. Few items take few bins.
 fn best_split(items: &[Item], middles: &Box32) -> Option<Best> {
-    (0..3)
-        .filter_map(|axis| best_along(items, axis, Bins::along(middles, axis)?))
-        .min_by(|a, b| a.cost.total_cmp(&b.cost))
+    let count = (2 * items.len()).clamp(4, BINS);
+    let axes: [Option<Bins>; 3] = std::array::from_fn(|axis| Bins::along(middles, axis, count));
+    let mut content = [[Content::NONE; BINS]; 3];
+    for item in items {
+        for (axis, bins) in axes.iter().enumerate() {
+            if let Some(bins) = bins {
+                let bin = bins.of(item.bounds.middle(axis));
+                content[axis][bin].add(&Content { bounds: item.bounds, count: 1 });
+            }
+        }
+    }
+    let along = |axis: usize| best_along(&content[axis][..count], axis, axes[axis]?);
+    (0..3).filter_map(along).min_by(|a, b| a.cost.total_cmp(&b.cost))
 }
 
-fn best_along(items: &[Item], axis: usize, bins: Bins) -> Option<Best> {
-    let mut content = [(Box32::EMPTY, 0u32); BINS];
-    for item in items {
-        let (bounds, count) = &mut content[bins.of(item.bounds.middle(axis))];
-        bounds.grow(&item.bounds);
-        *count += 1;
+fn best_along(content: &[Content], axis: usize, bins: Bins) -> Option<Best> {
+    let mut right = [Content::NONE; BINS];
+    let mut sum = Content::NONE;
+    for bin in (1..content.len()).rev() {
+        sum.add(&content[bin]);
+        right[bin] = sum;
     }
-    let mut right_cost = [0.0f32; BINS];
-    let (mut bounds, mut count) = (Box32::EMPTY, 0);
-    for bin in (1..BINS).rev() {
-        bounds.grow(&content[bin].0);
-        count += content[bin].1;
-        right_cost[bin] = if count == 0 { f32::INFINITY } else { bounds.area() * count as f32 };
-    }
-    let (mut bounds, mut count) = (Box32::EMPTY, 0);
+    let mut left = Content::NONE;
     let mut best: Option<Best> = None;
-    for bin in 1..BINS {
-        bounds.grow(&content[bin - 1].0);
-        count += content[bin - 1].1;
-        let cost = bounds.area() * count as f32 + right_cost[bin];
-        if count > 0 && cost.is_finite() && best.as_ref().is_none_or(|b| cost < b.cost) {
-            best = Some(Best { axis, bins, bin, cost });
+    for bin in 1..content.len() {
+        left.add(&content[bin - 1]);
+        let right = &right[bin];
+        let cost = left.bounds.area() * left.count as f32 + right.bounds.area() * right.count as f32;
+        let both = left.count > 0 && right.count > 0;
+        if both && cost.is_finite() && best.as_ref().is_none_or(|b| cost < b.cost) {
+            best = Some(Best { axis, bins, bin, cost, bounds: [left.bounds, right.bounds] });
         }
     }
     best

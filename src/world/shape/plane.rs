@@ -23,8 +23,23 @@ impl Plane {
     }
 
     pub(super) fn meet(&self, ray: &LocalRay, limit: f64) -> Option<Meet> {
+        if self.surely_misses(ray, limit) {
+            return None;
+        }
         let t = -self.height(ray.origin) / dot(self.normal, ray.direction);
         (t > 0.0 && t <= limit).then(|| Meet::at(t))
+    }
+
+    /// True where plain arithmetic already knows that the plane is behind the ray or beyond the limit: so for most rays.
+    fn surely_misses(&self, ray: &LocalRay, limit: f64) -> bool {
+        let n = self.normal;
+        let height = n.dot(ray.origin) - self.offset;
+        let height_doubt = (n.abs().dot(ray.origin.abs()) + self.offset.abs()) * gamma(5);
+        let speed = n.dot(ray.direction);
+        let speed_doubt = n.abs().dot(ray.direction.abs()) * gamma(4);
+        let certain = height.abs() > height_doubt && speed.abs() > speed_doubt;
+        let away = (height > 0.0) == (speed > 0.0);
+        certain && (away || height.abs() - height_doubt > limit * (speed.abs() + speed_doubt))
     }
 
     pub(super) fn surface(&self, ray: &LocalRay, meet: &Meet) -> Surface {

@@ -20,9 +20,12 @@ pub struct Sphere {
     pub radius: f64,
 }
 
-/// Rays that start farther away than this many radii, or pass the centre within one part in this many of the radius from grazing,
-/// take the precise path: the plain one keeps six bits fewer than the sixty-four it would lose at worst.
-const PRECISE_BEYOND: f64 = 64.0;
+/// Rays that start farther away than this many radii take the precise path: nearer ones lose fourteen bits of the outline at worst,
+/// which is within the next bound.
+const FAR: f64 = 16384.0;
+
+/// So do rays that pass within this share of the radius from grazing: the others lose six bits of the chord at worst.
+const GRAZING: f64 = 1.0 / 64.0;
 
 impl Sphere {
     pub(super) fn meet(&self, ray: &LocalRay, limit: f64) -> Option<Meet> {
@@ -43,7 +46,7 @@ impl Sphere {
         if miss_by > gamma(16) * (reach + r) {
             return None;
         }
-        if reach > PRECISE_BEYOND * r || -miss_by < r / PRECISE_BEYOND {
+        if reach > FAR * r || -miss_by < GRAZING * r {
             return self.precise_roots(ray, b / a);
         }
         let length = f.length();

@@ -187,3 +187,48 @@ fn light_passes_what_lets_it_through() {
     assert_eq!(world.transmittance(&shadow(f64::INFINITY), half), Rgb::ZERO);
     assert_eq!(world.transmittance(&shadow(3.0), half), Rgb::ONE);
 }
+
+#[test]
+fn groups_in_groups_without_end_are_no_danger() {
+    let mut inner = node(object(sphere(DVec3::ZERO, 1.0)));
+    for _ in 0..200_000 {
+        inner = node(object(Shape::Group([inner].into())));
+    }
+    let world = world_of(vec![inner], Accelerator::Bvh);
+    let hit = world.closest(&down(0.0)).expect("the ball inside");
+    assert_eq!(world.provenance(hit.primitive).expect("a place").path.len(), 200_000);
+}
+
+#[test]
+fn pairs_of_pairs_are_placed_and_not_copied() {
+    let mut ball = object(sphere(DVec3::ZERO, 0.4));
+    ball.name = Some("cell".into());
+    let mut nodes: Vec<Node> = vec![node(ball)];
+    for level in 0..30 {
+        let shared: Arc<[Node]> = nodes.into();
+        let at = |x: f64| {
+            let mut group = object(Shape::Group(Arc::clone(&shared)));
+            group.transform_by(&Affine::translate(DVec3::X * x * ogee::math::exact::power_of_two(level)));
+            node(group)
+        };
+        nodes = vec![at(0.0), at(1.0)];
+    }
+    let world = world_of(nodes, Accelerator::Bvh);
+    let hit = world.closest(&down(123_456_789.0)).expect("one of 2³⁰ balls");
+    assert_eq!(hit.point.x, 123_456_789.0);
+    let place = world.provenance(hit.primitive).expect("a place");
+    assert_eq!((place.path.len(), place.name.as_deref()), (30, Some("cell")));
+    assert!(world.stats().instances < 100);
+}
+
+#[test]
+fn placements_nested_too_deeply_are_left_out_with_an_error() {
+    let mut nodes: Vec<Node> = (0..8).map(|i| node(object(sphere(DVec3::X * f64::from(i), 0.1)))).collect();
+    for _ in 0..1000 {
+        let shared: Arc<[Node]> = nodes.into();
+        nodes = (0..2).map(|_| node(object(Shape::Group(Arc::clone(&shared))))).collect();
+    }
+    let (world, faults) = World::new(nodes, &Default::default(), &super::DiskLoader);
+    assert_eq!(faults.len(), 1, "{faults:?}");
+    assert!(!world.occluded(&down(0.0)));
+}
