@@ -87,11 +87,11 @@ impl View {
         let p = DVec2::new(2.0 * pixel.x / self.size.x - 1.0, 1.0 - 2.0 * pixel.y / self.size.y);
         let (origin, toward, sharp) = match self.film {
             Projected::Perspective(tangent) => {
-                let v = self.from_frame(p.x * tangent.x, p.y * tangent.y, 1.0);
+                let v = self.in_frame(p.x * tangent.x, p.y * tangent.y, 1.0);
                 (self.eye, v, self.focus)
             }
             Projected::Orthographic(half) => {
-                (self.eye + self.from_frame(p.x * half.x, p.y * half.y, 0.0), self.forward, self.focus)
+                (self.eye + self.in_frame(p.x * half.x, p.y * half.y, 0.0), self.forward, self.focus)
             }
             Projected::Fisheye(scale) => (self.eye, self.fisheye(p, scale)?, self.focus),
             Projected::Panorama => (self.eye, self.panorama(p), self.focus),
@@ -104,7 +104,7 @@ impl View {
         self.lens_radius > 0.0
     }
 
-    fn from_frame(&self, x: f64, y: f64, z: f64) -> DVec3 {
+    fn in_frame(&self, x: f64, y: f64, z: f64) -> DVec3 {
         self.right * x + self.up * y + self.forward * z
     }
 
@@ -117,12 +117,12 @@ impl View {
         }
         let (s, c) = sin_cos(angle);
         let side = if r > 0.0 { p * (s / r) } else { DVec2::ZERO };
-        Some(self.from_frame(side.x, side.y, c))
+        Some(self.in_frame(side.x, side.y, c))
     }
 
     fn panorama(&self, p: DVec2) -> DVec3 {
         let ((sx, cx), (sy, cy)) = (sin_cos(p.x * PI), sin_cos(p.y * PI / 2.0));
-        self.from_frame(sx * cy, sy, cx * cy)
+        self.in_frame(sx * cy, sy, cx * cy)
     }
 
     /// `toward` times `sharp` leads from the origin to the point that stays sharp.

@@ -131,11 +131,13 @@ fn write_exr(film: &Film, about: &Metadata, bytes: &mut Cursor<Vec<u8>>) -> Resu
         (c.x as f32, c.y as f32, c.z as f32)
     };
     let text = |s: &str| Text::new_or_none(s).unwrap_or_default();
-    let mut attributes = LayerAttributes::default();
-    attributes.layer_position = Vec2(crop.x as i32, crop.y as i32);
-    attributes.software_name = Some(text(&format!("ogee {}", about.version)));
     let json = serde_json::to_string(about).map_err(|e| OutputError::Encode(e.to_string()))?;
-    attributes.comments = Some(text(&json));
+    let attributes = LayerAttributes {
+        layer_position: Vec2(crop.x as i32, crop.y as i32),
+        software_name: Some(text(&format!("ogee {}", about.version))),
+        comments: Some(text(&json)),
+        ..LayerAttributes::default()
+    };
     let layer = Layer::new(
         (crop.width as usize, crop.height as usize),
         attributes,

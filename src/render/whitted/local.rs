@@ -23,13 +23,13 @@ impl Whitted {
         let mut sum = Rgb::ZERO;
         if bsdf.has_base() || bsdf.is_glossy() {
             for light in &self.lights.lights {
-                sum += self.from_light(world, hit, bsdf, light, first, sampler)?;
+                sum += self.sent_by(world, hit, bsdf, light, first, sampler)?;
             }
         }
         Ok(sum)
     }
 
-    fn from_light(
+    fn sent_by(
         &self,
         world: &World,
         hit: &Hit<'_>,

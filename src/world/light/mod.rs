@@ -159,9 +159,9 @@ impl Light {
     /// surface on the side that is lit. None where no light can come that way.
     pub fn sample(&self, at: DVec3, normal: DVec3, u: DVec2) -> Option<LightSample> {
         match &self.source {
-            Source::Point { position, intensity } => self.from_point(at, *position, |_| *intensity),
+            Source::Point { position, intensity } => self.by_point(at, *position, |_| *intensity),
             Source::Spot { position, direction, cosines, intensity } => {
-                self.from_point(at, *position, |wi| *intensity * cone_share(-direction.dot(wi), *cosines))
+                self.by_point(at, *position, |wi| *intensity * cone_share(-direction.dot(wi), *cosines))
             }
             Source::Sun { toward, irradiance } => {
                 Some(LightSample { wi: *toward, weight: *irradiance, pdf: None, end: LightEnd::Infinity })
@@ -175,12 +175,7 @@ impl Light {
         }
     }
 
-    fn from_point(
-        &self,
-        at: DVec3,
-        position: DVec3,
-        intensity: impl Fn(DVec3) -> Rgb,
-    ) -> Option<LightSample> {
+    fn by_point(&self, at: DVec3, position: DVec3, intensity: impl Fn(DVec3) -> Rgb) -> Option<LightSample> {
         let to = position - at;
         let squared = to.length_squared();
         let distance = squared.sqrt();

@@ -56,16 +56,16 @@ impl AreaLight {
     /// receiver's, on the side that is lit.
     pub(super) fn sample(&self, at: DVec3, normal: DVec3, u: DVec2) -> Option<(LightSample, f64)> {
         match &self.form {
-            Form::Sphere { center, radius } => self.from_sphere(at, normal, *center, *radius, u),
+            Form::Sphere { center, radius } => self.by_sphere(at, normal, *center, *radius, u),
             Form::Pieces { pieces, sums, solid } => {
                 let (piece, share, u) = choose(pieces, sums, u);
                 let inside = solid.as_ref().is_some_and(|s| s.contains(self.local_from_world.point(at)));
-                self.from_piece(at, piece.point(u), share, inside)
+                self.by_piece(at, piece.point(u), share, inside)
             }
         }
     }
 
-    fn from_piece(
+    fn by_piece(
         &self,
         at: DVec3,
         chosen: PiecePoint,
@@ -90,7 +90,7 @@ impl AreaLight {
 
     /// From outside by the solid angle that the sphere fills, written so that it keeps its digits however small the sphere
     /// (Pharr, Jakob & Humphreys §6.2.4); from inside, where every direction ends on it, by the cosine law.
-    fn from_sphere(
+    fn by_sphere(
         &self,
         at: DVec3,
         normal: DVec3,
