@@ -12,6 +12,7 @@ mod pictures;
 mod planted;
 mod radiometry;
 mod run;
+mod slips;
 mod stage;
 mod syntax;
 mod tables;

@@ -342,7 +342,7 @@ pub(super) fn general(text: &str, head: &Piece<'_>, around: &Around<'_>) -> Said
     {
         return stray_equals(&equals);
     }
-    if let Some(at) = around.at.filter(|at| at.sort == Sort::Strange) {
+    if let Some(at) = around.at.filter(|at| at.sort == Sort::Strange && !at.first) {
         return strange(&at);
     }
     if let Some(choice) = around.choice.filter(|_| around.before.is_some_and(|b| b.ends_value())) {
@@ -565,6 +565,7 @@ fn extent_from(text: &str, head: &Piece<'_>, end: usize) -> usize {
 fn reach(text: &str, start: usize, place: usize, needs_body: bool, end: usize) -> usize {
     let mut before: Option<Piece<'_>> = None;
     let mut body = !needs_body;
+    let in_choice = text[start..].starts_with("if");
     let mut pieces = Pieces::new(text, start, end).peekable();
     while let Some(piece) = pieces.next() {
         let stop = match before {
@@ -573,7 +574,8 @@ fn reach(text: &str, start: usize, place: usize, needs_body: bool, end: usize) -
             Some(before) => {
                 piece.start >= place
                     && (piece.text == ";"
-                        || begins_item(&piece, &before, place, pieces.peek()) && (body || piece.first))
+                        || begins_item(&piece, &before, place, in_choice, pieces.peek())
+                            && (body || piece.first))
             }
         };
         if stop {
@@ -586,8 +588,18 @@ fn reach(text: &str, start: usize, place: usize, needs_body: bool, end: usize) -
 }
 
 /// Whether a piece after the fault begins another item.
-fn begins_item(piece: &Piece<'_>, before: &Piece<'_>, place: usize, next: Option<&Piece<'_>>) -> bool {
-    let goes_on = matches!(piece.text, "with" | "else" | "step" | "in" | "as" | "and" | "or");
+fn begins_item(
+    piece: &Piece<'_>,
+    before: &Piece<'_>,
+    place: usize,
+    in_choice: bool,
+    next: Option<&Piece<'_>>,
+) -> bool {
+    if piece.first && piece.sort == Sort::Strange {
+        return true;
+    }
+    let goes_on = matches!(piece.text, "with" | "step" | "in" | "as" | "and" | "or")
+        || piece.text == "else" && in_choice && before.text.starts_with('{');
     if piece.sort != Sort::Word || goes_on || !piece.apart {
         return false;
     }

@@ -63,7 +63,7 @@ impl<'a> Builder<'a> {
             let inner = self.expression(tokens.next().expect("it has one pair"));
             return Expr { kind: inner.kind, span };
         }
-        let found = if tokens.len() == 0 {
+        let found = if tokens.is_empty() {
             Diagnostic::new(Code::Syntax, span, "nothing stands between these parentheses")
                 .hint("a function without parameters is written `() => …`")
         } else {

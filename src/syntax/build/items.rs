@@ -223,7 +223,7 @@ impl<'a> Builder<'a> {
             return ItemKind::Bad { defines: label };
         }
         let block = Block { kind, label, items, braces };
-        if tokens.len() == 0 {
+        if tokens.is_empty() {
             return ItemKind::Block(Box::new(block));
         }
         if let Some(label) = &block.label {
@@ -380,7 +380,7 @@ pub(super) fn too_deep(span: Span, limit: usize) -> Diagnostic {
     let span = Span { end: span.end.min(span.start + 1), ..span };
     Diagnostic::new(Code::TooDeep, span, format!("this is nested more than {limit} levels deep"))
         .label("brackets and operators nest past the limit here")
-        .hint("name parts of it with `let`, or raise the limit with `--limit depth=N`")
+        .hint("name parts of it with `let`, or raise the limit with `--limit nesting=N`")
 }
 
 fn reserved(ident: &Ident) -> Diagnostic {

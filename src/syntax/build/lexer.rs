@@ -95,6 +95,7 @@ impl<'t> Pieces<'t> {
             '_' => (Sort::Word, word(text)),
             c if c.is_alphabetic() => (Sort::Word, word(text)),
             '#' => (Sort::Word, 1 + word(&text[1..])),
+            '@' | '$' | '~' | '`' | '\'' | '\\' => (Sort::Strange, 1),
             c if c.is_ascii_graphic() => (Sort::Sign, sign(rest)),
             c => (Sort::Strange, c.len_utf8()),
         }

@@ -3,7 +3,6 @@
 //!
 //! Nothing here looks up a name, and nothing here stops at the first fault.
 
-use pest_derive::Parser;
 use rayon::prelude::*;
 
 use super::ast;
@@ -75,10 +74,17 @@ impl Default for ParseLimits {
     }
 }
 
-/// What `pest` makes of the grammar.
-#[derive(Parser)]
-#[grammar = "../grammar/ogee.pest"]
-struct Grammar;
+use grammar::{Grammar, Rule};
+
+/// What `pest` makes of the grammar; a module of its own, because the rules of the grammar are documented there.
+#[allow(missing_docs)]
+mod grammar {
+    use pest_derive::Parser;
+
+    #[derive(Parser)]
+    #[grammar = "../grammar/ogee.pest"]
+    pub(super) struct Grammar;
+}
 
 /// A run of items is at least this many bytes: small enough that a run's tokens stay in the processor's caches and
 /// that a file divides among threads, large enough that starting on a run costs nothing.

@@ -147,7 +147,7 @@ impl<'a> Builder<'a> {
             let span = self.span(&expression);
             let mut inner = expression.into_inner();
             match inner.next() {
-                Some(name) if name.as_rule() == Rule::name && inner.len() == 0 => {
+                Some(name) if name.as_rule() == Rule::name && inner.is_empty() => {
                     parameters.push(Parameter { name: self.binding(name), default: None });
                 }
                 _ => self.report(

@@ -78,7 +78,7 @@ impl<'t> Layout<'t> {
     fn entries(&self, start: usize, end: usize, items: &[ItemPlace]) -> Vec<Entry<'t>> {
         let mut entries = Vec::new();
         let mut at = start;
-        let mut gap = |from: usize, to: usize, entries: &mut Vec<Entry<'t>>| {
+        let gap = |from: usize, to: usize, entries: &mut Vec<Entry<'t>>| {
             let mut found = Vec::new();
             comments(self.text, from, to, &mut found);
             entries.extend(found.into_iter().map(Entry::Comment));
