@@ -174,9 +174,9 @@ mod tests {
         let mut sources = SourceMap::default();
         let id = sources.add("esc.scene", "let a = \u{1b}[2J\u{7} b\n");
         let fault = Diagnostic::new(Code::Syntax, Span::new(id, 8, 9), "found \u{1b}[2J");
-        let plain = human(&[fault.clone()], &sources, Style::plain(80));
+        let plain = human(std::slice::from_ref(&fault), &sources, Style::plain(80));
         assert!(!plain.contains('\u{1b}') && !plain.contains('\u{7}'));
-        let coloured = human(&[fault.clone()], &sources, Style { colour: true, width: 80 });
+        let coloured = human(std::slice::from_ref(&fault), &sources, Style { colour: true, width: 80 });
         assert!(!coloured.contains("\u{1b}[2J"));
         assert!(!short(&[fault], &sources).contains('\u{1b}'));
     }

@@ -271,7 +271,7 @@ fn alike(a: f64, b: f64) -> bool {
 /// across zero the one and the other by turns.
 fn middle(a: f64, b: f64, turn: u32) -> f64 {
     let mean = a / 2.0 + b / 2.0;
-    if a < mean && mean < b && (alike(a, b) || (a * b < 0.0 && turn % 2 == 0)) {
+    if a < mean && mean < b && (alike(a, b) || (a * b < 0.0 && turn.is_multiple_of(2))) {
         return mean;
     }
     let order = |x: f64| {

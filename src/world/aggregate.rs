@@ -15,6 +15,7 @@ pub(super) const INHERITED: u32 = u32::MAX;
 
 /// Things under one tree, in one space. The world itself is the first.
 #[derive(Debug)]
+#[allow(clippy::large_enum_variant, reason = "few, and walked for every ray: no box between")]
 pub(super) enum Aggregate {
     Group(Group),
     Mesh(MeshAggregate),

@@ -169,7 +169,7 @@ impl Patch {
             Layout::Loose if self.pieces.len() == 1 => (1, 1),
             Layout::Loose => return Err(PatchError::Loose { n_pieces: self.pieces.len() }),
         };
-        let inside = |t: f64| t >= -SLACK && t <= 1.0 + SLACK;
+        let inside = |t: f64| (-SLACK..=1.0 + SLACK).contains(&t);
         if !(inside(u) && inside(v)) {
             return Err(PatchError::OutsideDomain { u, v });
         }

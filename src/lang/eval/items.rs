@@ -49,10 +49,7 @@ impl<'p> Evaluator<'p> {
             ItemKind::For(turns) => return self.for_item(turns, item.span, out),
             ItemKind::While(turns) => return self.while_item(turns, item.span, out),
             ItemKind::Return(value) => {
-                self.returned = match value {
-                    Some(value) => Some(self.expr(value)),
-                    None => None,
-                };
+                self.returned = value.as_ref().map(|value| self.expr(value));
                 return Ok(Flow::Return);
             }
             ItemKind::Import(unit, span) => self.import(*unit, *span)?,

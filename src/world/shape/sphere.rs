@@ -70,7 +70,7 @@ impl Sphere {
         let nearest = along(close, rest);
         let room = Double::product(self.radius, self.radius) - dot(nearest, nearest);
         let half = (room.value() / a).sqrt();
-        (half >= 0.0).then(|| (approach + (rest - half), approach + (rest + half)))
+        (half >= 0.0).then_some((approach + (rest - half), approach + (rest + half)))
     }
 
     pub(super) fn surface(&self, ray: &LocalRay, meet: &Meet) -> Surface {
