@@ -395,7 +395,14 @@ fn sample(kind: Type) -> String {
 pub fn remedy(name: &str, types: &[Type], value: &Value) -> Option<String> {
     let wanted = types.iter().find_map(|t| dimension(*t));
     let wants_number = types.iter().any(|t| {
-        matches!(t, Type::Number { .. } | Type::Positive | Type::Factor | Type::Integer { .. } | Type::NumberTexture { .. })
+        matches!(
+            t,
+            Type::Number { .. }
+                | Type::Positive
+                | Type::Factor
+                | Type::Integer { .. }
+                | Type::NumberTexture { .. }
+        )
     });
     let wants_words = types.iter().any(|t| !t.words().is_empty());
     match value {

@@ -155,7 +155,9 @@ fn kind_page(out: &mut String, kind: &Kind, level: usize) {
         out.push_str("Any other property is the name of a joint.\n\n");
     }
     let common = match kind.role {
-        Role::Object => "Also what every object takes: `translate rotate scale shear matrix material name hide`",
+        Role::Object => {
+            "Also what every object takes: `translate rotate scale shear matrix material name hide`"
+        }
         Role::Light => "Also the transforms: `translate rotate scale shear matrix`",
         Role::Value | Role::Setting | Role::Part => "",
     };
@@ -190,11 +192,17 @@ fn property_table<'a>(properties: impl Iterator<Item = &'a Property>) -> String 
 
 fn property_page(out: &mut String, name: &str) {
     if let Some(p) = common::of_role(Role::Object).find(|p| p.name == name) {
-        let _ = writeln!(out, "# The property `{name}` of objects\n\n{}.\n\nTakes {}.\n", upper_first(p.doc), forms(p));
+        let _ = writeln!(
+            out,
+            "# The property `{name}` of objects\n\n{}.\n\nTakes {}.\n",
+            upper_first(p.doc),
+            forms(p)
+        );
     }
     for kind in kinds::ALL {
         let Some(p) = kind.own.iter().find(|p| p.name == name) else { continue };
-        let default = if p.default.is_empty() { String::new() } else { format!(" By default `{}`.", p.default) };
+        let default =
+            if p.default.is_empty() { String::new() } else { format!(" By default `{}`.", p.default) };
         let _ = writeln!(
             out,
             "# The property `{name}` of `{}`\n\n{}.\n\nTakes {}.{default}\n",
@@ -208,7 +216,8 @@ fn property_page(out: &mut String, name: &str) {
 fn builtin_page(out: &mut String, builtin: &Builtin, level: usize) {
     let _ = writeln!(out, "{} `{}`\n\n{}\n", "#".repeat(level), builtin.form(), builtin.doc);
     for (i, p) in builtin.parameters.iter().enumerate() {
-        let more = if builtin.variadic && i + 1 == builtin.parameters.len() { ", any number of them" } else { "" };
+        let more =
+            if builtin.variadic && i + 1 == builtin.parameters.len() { ", any number of them" } else { "" };
         let default = p.default.map_or(String::new(), |d| format!("; by default `{d}`"));
         let _ = writeln!(out, "- `{}`: {}{more}{default}", p.name, p.takes);
     }
@@ -255,7 +264,9 @@ mod tests {
         assert!(sphere.contains("| `radius` | a number above 0 | `1` |"), "{sphere}");
         assert!(sphere.contains("```ogee\nsphere {"));
         let sqrt = page("sqrt").unwrap();
-        assert!(sqrt.contains("Defined for 0 and above") && sqrt.contains("`sqrt(2)` is `1.4142135623730951`"));
+        assert!(
+            sqrt.contains("Defined for 0 and above") && sqrt.contains("`sqrt(2)` is `1.4142135623730951`")
+        );
         assert!(page("radius").unwrap().contains("of `torus`") == page("radius").unwrap().contains("radii"));
     }
 

@@ -138,7 +138,10 @@ fn mutated(corpus: &[String], random: &mut Random) -> String {
             0 => text.replace_range(a..b, ""),
             1 => text.insert_str(a, random.pick(PIECES)),
             2 => text.replace_range(a..b, random.pick(PIECES)),
-            3 => text.insert_str(b, &text[a..b].to_owned()),
+            3 => {
+                let again = text[a..b].to_owned();
+                text.insert_str(b, &again);
+            }
             4 => {
                 let other = &corpus[random.below(corpus.len())];
                 let from = char_floor(other, random.below(other.len() + 1));

@@ -198,13 +198,13 @@ fn some_transform(random: &mut Random) -> Affine {
 fn any_ray(random: &mut Random, i: usize) -> Ray {
     let origin = random.vector() * 8.0;
     let mut direction = (random.vector() * 3.0 - origin).normalize();
-    if i % 4 == 0 {
+    if i.is_multiple_of(4) {
         let axis = i / 4 % 3;
         direction = DVec3::ZERO;
         direction[axis] = random.signed().signum();
         direction[(axis + 1) % 3] = -0.0;
     }
-    ray(if i % 8 == 0 { origin.round() } else { origin }, direction)
+    ray(if i.is_multiple_of(8) { origin.round() } else { origin }, direction)
 }
 
 fn facts(hit: &Hit<'_>) -> (u64, PrimitiveId, DVec3, DVec3, DVec3) {

@@ -1,5 +1,7 @@
 //! Behaviour of the whole: one test binary, so that it links once. Each module is a topic.
 
+#![allow(clippy::disallowed_methods, clippy::unwrap_used, clippy::print_stdout, clippy::print_stderr)]
+
 mod command;
 mod diagnostics;
 mod fuzz;

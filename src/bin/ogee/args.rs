@@ -322,6 +322,7 @@ impl From<Tracer> for TracerKind {
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
 #[value(rename_all = "lower")]
 #[allow(missing_docs, reason = "the names are the words of the language")]
+#[allow(clippy::enum_variant_names, reason = "the words of the language")]
 pub enum Tree {
     Bvh,
     KdTree,
