@@ -4,6 +4,7 @@
 
 mod command;
 mod diagnostics;
+mod explain;
 mod fuzz;
 mod golden;
 mod intersection;
