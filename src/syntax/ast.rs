@@ -3,7 +3,7 @@
 use crate::diag::Span;
 
 /// A name as it was written.
-#[derive(Clone, Debug, PartialEq, serde::Serialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Ident {
     /// The text. Short names are stored in place.
     pub name: Name,
@@ -15,7 +15,7 @@ pub struct Ident {
 pub type Name = Box<str>;
 
 /// A whole file.
-#[derive(Clone, Debug, PartialEq, serde::Serialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct File {
     /// Top-level items in source order.
     pub items: Vec<Item>,
@@ -24,7 +24,7 @@ pub struct File {
 }
 
 /// What may stand at top level and inside braces.
-#[derive(Clone, Debug, PartialEq, serde::Serialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Item {
     /// What it is.
     pub kind: ItemKind,
@@ -33,7 +33,7 @@ pub struct Item {
 }
 
 /// The forms of an item.
-#[derive(Clone, Debug, PartialEq, serde::Serialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum ItemKind {
     /// `name` · `name expr` · `name expr, expr, …`. With no values it is a flag, or the placement of a value of that
     /// name: only evaluation can tell. `name { … }` with a kind's name and no label is an [`ItemKind::Block`].
@@ -69,7 +69,7 @@ pub enum ItemKind {
 }
 
 /// `name values…`.
-#[derive(Clone, Debug, PartialEq, serde::Serialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Property {
     /// The property's name, which may be a kind's (`material clay`).
     pub name: Ident,
@@ -78,7 +78,7 @@ pub struct Property {
 }
 
 /// `kind label { items }`.
-#[derive(Clone, Debug, PartialEq, serde::Serialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Block {
     /// The kind, one of [`super::build::KINDS`].
     pub kind: Ident,
@@ -91,7 +91,7 @@ pub struct Block {
 }
 
 /// A function item.
-#[derive(Clone, Debug, PartialEq, serde::Serialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Function {
     /// Its name.
     pub name: Ident,
@@ -102,7 +102,7 @@ pub struct Function {
 }
 
 /// A parameter, with what it is where the call leaves it out.
-#[derive(Clone, Debug, PartialEq, serde::Serialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Parameter {
     /// Its name.
     pub name: Ident,
@@ -111,7 +111,7 @@ pub struct Parameter {
 }
 
 /// A function's body.
-#[derive(Clone, Debug, PartialEq, serde::Serialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Body {
     /// `= expr`, or a lambda's.
     Expr(Expr),
@@ -120,7 +120,7 @@ pub enum Body {
 }
 
 /// A choice between items.
-#[derive(Clone, Debug, PartialEq, serde::Serialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct If {
     /// Condition and items of `if` and of each `else if`; at least one.
     pub arms: Vec<(Expr, Vec<Item>)>,
@@ -129,7 +129,7 @@ pub struct If {
 }
 
 /// A loop over a range or list.
-#[derive(Clone, Debug, PartialEq, serde::Serialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct For {
     /// The loop's variable.
     pub variable: Ident,
@@ -140,7 +140,7 @@ pub struct For {
 }
 
 /// A loop while a condition holds.
-#[derive(Clone, Debug, PartialEq, serde::Serialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct While {
     /// The condition.
     pub condition: Expr,
@@ -149,7 +149,7 @@ pub struct While {
 }
 
 /// An import. The path is always a literal text, so that imports are known before evaluation.
-#[derive(Clone, Debug, PartialEq, serde::Serialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Import {
     /// The path as written, escapes decoded.
     pub path: String,
@@ -160,7 +160,7 @@ pub struct Import {
 }
 
 /// An expression.
-#[derive(Clone, Debug, PartialEq, serde::Serialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Expr {
     /// What it is.
     pub kind: ExprKind,
@@ -169,7 +169,7 @@ pub struct Expr {
 }
 
 /// The forms of an expression.
-#[derive(Clone, Debug, PartialEq, serde::Serialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum ExprKind {
     /// `1.5e3`; decoded with correct rounding.
     Number(f64),
@@ -219,7 +219,7 @@ pub enum ExprKind {
 }
 
 /// A part of a text.
-#[derive(Clone, Debug, PartialEq, serde::Serialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum TextPart {
     /// Characters, escapes decoded.
     Literal(String),
@@ -228,7 +228,7 @@ pub enum TextPart {
 }
 
 /// `[value for variable in list if condition]`.
-#[derive(Clone, Debug, PartialEq, serde::Serialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Comprehension {
     /// What each element is.
     pub value: Expr,
@@ -241,7 +241,7 @@ pub struct Comprehension {
 }
 
 /// A range of integers or of steps.
-#[derive(Clone, Debug, PartialEq, serde::Serialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct RangeExpr {
     /// First value.
     pub start: Expr,
@@ -254,7 +254,7 @@ pub struct RangeExpr {
 }
 
 /// A call.
-#[derive(Clone, Debug, PartialEq, serde::Serialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Call {
     /// What is called.
     pub callee: Expr,
@@ -265,7 +265,7 @@ pub struct Call {
 }
 
 /// `value` or `name: value`.
-#[derive(Clone, Debug, PartialEq, serde::Serialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Argument {
     /// The parameter's name, where it is given.
     pub name: Option<Ident>,
@@ -274,7 +274,7 @@ pub struct Argument {
 }
 
 /// `base with { items }`.
-#[derive(Clone, Debug, PartialEq, serde::Serialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct With {
     /// What is copied.
     pub base: Expr,
@@ -285,7 +285,7 @@ pub struct With {
 }
 
 /// A function value.
-#[derive(Clone, Debug, PartialEq, serde::Serialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Lambda {
     /// Its parameters (no defaults in `p => e`).
     pub parameters: Vec<Parameter>,
@@ -294,7 +294,7 @@ pub struct Lambda {
 }
 
 /// Operators before an operand.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, serde::Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum UnaryOp {
     /// `-`
     Negate,
@@ -303,7 +303,7 @@ pub enum UnaryOp {
 }
 
 /// Operators between operands, loosest first.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, serde::Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum BinaryOp {
     /// `||`
     Or,

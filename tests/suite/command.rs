@@ -119,7 +119,7 @@ fn a_full_disk_leaves_the_old_picture_and_no_torn_one() {
 #[test]
 fn a_reader_that_goes_away_is_no_fault() {
     let folder = ball();
-    for line in ["ast ball.scene", "explain", "man", "render ball.scene --size 320x240 -o -"] {
+    for line in ["ast ball.scene", "explain", "docs", "man", "render ball.scene --size 320x240 -o -"] {
         let run = folder.sh(&format!("{{ sleep 0.1; $OGEE {line}; echo $? >code; }} | true"));
         assert!(!run.stderr.contains("panic") && !run.stderr.contains("fault"), "{line}: {}", run.stderr);
         assert_eq!(folder.read("code"), b"0\n", "{line}");
@@ -173,6 +173,23 @@ fn values_are_printed_so_that_they_come_back_the_same() {
     assert_eq!(folder.ogee("eval twice(side) --in a.scene").expect(0).out(), "6\n");
     assert_eq!(folder.ogee("eval pi --digits 3").expect(0).out(), "3.14\n");
     folder.ogee("eval 1/0").expect(1);
+}
+
+#[test]
+fn formatting_changes_the_layout_alone_and_only_once() {
+    let folder = Folder::with(&[("a.scene", "sphere{radius   1}  // a ball\n")]);
+    let run = folder.ogee("fmt --check a.scene").expect(1);
+    assert!(run.stderr.contains("a.scene"), "{}", run.stderr);
+    let before = folder.ogee("ast a.scene").expect(0).stdout;
+    folder.ogee("fmt a.scene").expect(0);
+    folder.ogee("fmt --check a.scene").expect(0);
+    assert!(folder.ogee("ast a.scene").expect(0).stdout == before);
+    assert!(String::from_utf8(folder.read("a.scene")).unwrap().contains("// a ball"));
+    let run = folder.ogee_fed("fmt -", "sphere{radius   1}").expect(0);
+    assert!(run.out().starts_with("sphere { radius 1 }"), "{}", run.out());
+    let broken = Folder::with(&[("b.scene", "sphere { radius \n")]);
+    broken.ogee("fmt b.scene").expect(1);
+    assert_eq!(broken.read("b.scene"), b"sphere { radius \n", "a broken scene is left alone");
 }
 
 #[test]

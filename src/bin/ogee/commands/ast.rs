@@ -1,10 +1,9 @@
 //! `ogee ast`: how a scene was read.
 
 use crate::args::{Ast, DataFormat};
-use crate::speech::{Ended, Exit, Failure, data, show};
+use crate::speech::{Ended, Exit, data, show};
 use ogee::session::Limits;
-use ogee::syntax::ast::File;
-use ogee::syntax::print::print;
+use ogee::syntax::print::{print, print_json};
 
 /// Prints the syntax tree, also that of a scene with faults, and says the faults.
 pub fn run(args: &Ast) -> Ended {
@@ -12,11 +11,7 @@ pub fn run(args: &Ast) -> Ended {
     show(&parsed.diagnostics, &parsed.sources);
     data(match args.format {
         DataFormat::Text => print(&parsed.tree),
-        DataFormat::Json => format!("{}\n", json(&parsed.tree)?),
+        DataFormat::Json => format!("{}\n", print_json(&parsed.tree)),
     })?;
     Ok(if parsed.diagnostics.is_empty() { Exit::Done } else { Exit::Scene })
-}
-
-fn json(tree: &File) -> Result<String, Failure> {
-    serde_json::to_string(tree).map_err(|error| Failure::machine("cannot write the tree", error))
 }

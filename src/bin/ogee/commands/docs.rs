@@ -1,10 +1,24 @@
 //! `ogee docs`: the reference, derived from the tables of the language.
 
 use crate::args::Docs;
-use crate::speech::{Ended, Failure};
+use crate::speech::{Ended, Exit, Failure, data};
+use ogee::diag::nearest;
+use ogee::lang::reference;
 
-/// Prints a page, or all of them.
+/// Prints the page of a name, or the whole reference as Markdown.
 pub fn run(args: &Docs) -> Ended {
-    let _ = &args.name;
-    Err(Failure::not_built("`ogee docs`"))
+    let text = match &args.name {
+        None => reference::whole(),
+        Some(name) => reference::page(name).ok_or_else(|| unknown(name))?,
+    };
+    data(format!("{}\n", text.trim_end()))?;
+    Ok(Exit::Done)
+}
+
+fn unknown(name: &str) -> Failure {
+    let near = nearest(name, reference::names());
+    let hint = near.map_or(String::new(), |near| format!("did you mean `{near}`? "));
+    Failure::usage(format!(
+        "there is no page on `{name}`\n{hint}`ogee docs` alone prints the whole reference"
+    ))
 }

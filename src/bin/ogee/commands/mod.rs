@@ -15,7 +15,7 @@ pub mod test;
 
 use crate::args::{Evaluation, LimitName};
 use crate::speech::{Failure, reason, tell};
-use ogee::diag::{Code, Diagnostic, SourceMap};
+use ogee::diag::{Code, Diagnostic, SourceId, SourceMap};
 use ogee::scene::assets::DiskLoader;
 use ogee::session::{Evaluated, Limits, Options, Session};
 use ogee::syntax::ast::File;
@@ -97,6 +97,8 @@ fn nearest_file(file: &Path) -> Option<std::path::PathBuf> {
 /// A file as it was read: its tree, whole or in part, and the faults of its text.
 struct Parsed {
     sources: SourceMap,
+    id: SourceId,
+    limits: ParseLimits,
     tree: File,
     diagnostics: Vec<Diagnostic>,
 }
@@ -114,7 +116,8 @@ fn parsed(file: &Path, limits: Limits) -> Result<Parsed, Failure> {
         }
     };
     let id = sources.add(name, text.as_str());
-    let (tree, found) = parse_file(id, &text, ParseLimits { depth: limits.nesting });
+    let limits = ParseLimits { depth: limits.nesting };
+    let (tree, found) = parse_file(id, &text, limits);
     diagnostics.extend(found);
-    Ok(Parsed { sources, tree, diagnostics })
+    Ok(Parsed { sources, id, limits, tree, diagnostics })
 }
