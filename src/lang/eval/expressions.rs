@@ -127,7 +127,7 @@ impl<'p> Evaluator<'p> {
                 operators::order(op, &a, &b, span)
             }
         };
-        result.map(Value::Bool).map_err(|said| self.fail(said))
+        result.map(Value::Bool).map_err(|said| self.fail(*said))
     }
 
     /// An operand of logic.

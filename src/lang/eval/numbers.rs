@@ -25,7 +25,7 @@ impl<'p> Evaluator<'p> {
                 None => {
                     let value = self.spilled();
                     let negated =
-                        value.and_then(|v| operators::negate(&v, e.span).map_err(|said| self.fail(said)));
+                        value.and_then(|v| operators::negate(&v, e.span).map_err(|said| self.fail(*said)));
                     self.spill(negated)
                 }
             },
@@ -80,7 +80,7 @@ impl<'p> Evaluator<'p> {
     #[inline(never)]
     fn mixed(&mut self, op: Arithmetic, a: Outcome, b: Outcome, span: Span) -> Option<f64> {
         let joined = match (a, b) {
-            (Ok(a), Ok(b)) => operators::arithmetic(op, &a, &b, span).map_err(|said| self.fail(said)),
+            (Ok(a), Ok(b)) => operators::arithmetic(op, &a, &b, span).map_err(|said| self.fail(*said)),
             (Err(reported), _) | (_, Err(reported)) => Err(reported),
         };
         self.spill(joined)

@@ -9,6 +9,9 @@ use crate::math::elementary;
 use glam::{DVec2, DVec3, DVec4};
 use std::rc::Rc;
 
+/// What is wrong with operands; boxed, because it is rare and large.
+type Fault = Box<Diagnostic>;
+
 /// Whole exponents up to this size are repeated products, which are exact while the result fits 53 bits; others go to `pow`.
 pub const WHOLE_POWER: f64 = 64.0;
 
@@ -36,7 +39,7 @@ pub fn power(a: f64, b: f64) -> f64 {
 
 /// `a op b` on numbers and vectors: component by component, a number beside a vector stands for every component.
 /// The error says what is wrong; the caller adds nothing.
-pub fn arithmetic(op: Arithmetic, a: &Value, b: &Value, span: Span) -> Result<Value, Diagnostic> {
+pub fn arithmetic(op: Arithmetic, a: &Value, b: &Value, span: Span) -> Result<Value, Fault> {
     let f = |x, y| number(op, x, y);
     let value = match (a, b) {
         (Value::Number(x), Value::Number(y)) => Value::Number(f(*x, *y)),
@@ -49,12 +52,12 @@ pub fn arithmetic(op: Arithmetic, a: &Value, b: &Value, span: Span) -> Result<Va
         (Value::Vector4(u), Value::Vector4(v)) => zip4(**u, **v, f),
         (Value::Vector4(u), Value::Number(y)) => zip4(**u, DVec4::splat(*y), f),
         (Value::Number(x), Value::Vector4(v)) => zip4(DVec4::splat(*x), **v, f),
-        _ => return Err(mismatch(op, a, b, span)),
+        _ => return Err(Box::new(mismatch(op, a, b, span))),
     };
     if sound(&value) || (!is_nan(&value) && (infinite(a) || infinite(b))) {
         return Ok(value);
     }
-    Err(no_value(op, a, b, span))
+    Err(Box::new(no_value(op, a, b, span)))
 }
 
 fn zip2(u: DVec2, v: DVec2, f: impl Fn(f64, f64) -> f64) -> DVec2 {
@@ -162,17 +165,16 @@ fn mismatch(op: Arithmetic, a: &Value, b: &Value, span: Span) -> Diagnostic {
 }
 
 /// `-a`.
-pub fn negate(a: &Value, span: Span) -> Result<Value, Diagnostic> {
+pub fn negate(a: &Value, span: Span) -> Result<Value, Fault> {
     match a {
         Value::Number(x) => Ok(Value::Number(-x)),
         Value::Vector2(v) => Ok(Value::Vector2(-*v)),
         Value::Vector3(v) => Ok(Value::Vector3(-*v)),
         Value::Vector4(v) => Ok(Value::Vector4(Rc::new(-**v))),
-        other => Err(Diagnostic::new(
-            Code::TypeMismatch,
-            span,
-            format!("`-` takes a number or a vector, and this is {}", shown(other)),
-        )),
+        other => {
+            let message = format!("`-` takes a number or a vector, and this is {}", shown(other));
+            Err(Box::new(Diagnostic::new(Code::TypeMismatch, span, message)))
+        }
     }
 }
 
@@ -190,7 +192,7 @@ pub fn compare(op: Comparison, a: f64, b: f64) -> bool {
 }
 
 /// `a < b` and the like, on numbers; texts are ordered by their characters.
-pub fn order(op: Comparison, a: &Value, b: &Value, span: Span) -> Result<bool, Diagnostic> {
+pub fn order(op: Comparison, a: &Value, b: &Value, span: Span) -> Result<bool, Fault> {
     let ordering = match (a, b) {
         (Value::Number(x), Value::Number(y)) => x.partial_cmp(y),
         (Value::Text(s), Value::Text(t)) => Some(s.cmp(t)),
@@ -199,11 +201,8 @@ pub fn order(op: Comparison, a: &Value, b: &Value, span: Span) -> Result<bool, D
                 format!("`{}` orders numbers, and these are {} and {}", op.text(), shown(a), shown(b));
             let said = Diagnostic::new(Code::TypeMismatch, span, message);
             let vectors = matches!((a, b), (Value::Vector2(_) | Value::Vector3(_) | Value::Vector4(_), _));
-            return Err(if vectors {
-                said.hint("compare a component, `v.x`, or the `length(v)`")
-            } else {
-                said
-            });
+            let hinted = |said: Diagnostic| said.hint("compare a component, `v.x`, or the `length(v)`");
+            return Err(Box::new(if vectors { hinted(said) } else { said }));
         }
     };
     Ok(ordering.is_some_and(|o| match op {
