@@ -232,11 +232,9 @@ impl<'a> Resolver<'a> {
         access
     }
 
-    /// Says that a name means nothing here, unless a file is missing that may have defined it.
+    /// Says that a name means nothing here, unless a file is missing that may have defined it. A name that is nearly one of
+    /// those here is a slip of the pen all the same.
     fn report_unknown(&mut self, name: &str, span: Span, words: &[&str]) {
-        if self.unknown_names {
-            return;
-        }
         if let Some(later) = self.scopes.declared_later(name) {
             return self.report(
                 Diagnostic::new(Code::UsedBeforeSet, span, format!("`{name}` is used before it is defined"))
@@ -251,6 +249,9 @@ impl<'a> Resolver<'a> {
         let mut said = Diagnostic::new(Code::UnknownName, span, format!("`{name}` is not defined"))
             .label("no such name here")
             .did_you_mean(name, names);
+        if said.hints.is_empty() && self.unknown_names {
+            return;
+        }
         if said.hints.is_empty() && !words.is_empty() {
             said = said.hint(format!("this property takes one of the words {}", listed(words)));
         }
