@@ -2,7 +2,7 @@
 //! Knows nothing of what is swept along them.
 //!
 //! A frame is carried from node to node by double reflection (fourth order), with nodes as close as it takes for the twist to be
-//! right to [`TWIST`]. On a closed path it comes back turned about the tangent; that angle is spread evenly over its length.
+//! right to `TWIST`. On a closed path it comes back turned about the tangent; that angle is spread evenly over its length.
 
 use super::arc_length::ArcLength;
 use super::curve::{Side, across, any_across};

@@ -52,7 +52,7 @@ fn value_and_slope(coefficients: &[f64], t: f64) -> (f64, f64) {
 const TOUCH: f64 = 8.0;
 
 /// All t in [0, 1] where the polynomial is 0, ascending. A root where the value touches 0 without crossing is reported once, and
-/// only where its value is within rounding of 0 ([`TOUCH`]). None for the zero polynomial, which has no isolated root.
+/// only where its value is within rounding of 0 (`TOUCH`). None for the zero polynomial, which has no isolated root.
 pub fn roots(coefficients: &[f64]) -> Vec<f64> {
     let n = coefficients.len();
     debug_assert!((1..=MAX_DEGREE + 1).contains(&n));

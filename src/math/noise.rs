@@ -16,7 +16,7 @@ pub const fn mix64(x: u64) -> u64 {
 const GOLDEN: u64 = 0x9e37_79b9_7f4a_7c15;
 
 /// A hash of a row of numbers by their bits (−0 counts as 0), of their order and of their count: h₀ = 0 and
-/// hᵢ₊₁ = mix64(hᵢ + (i + 1)·γ + mix64(bits(xᵢ) + γ)), γ = [`GOLDEN`].
+/// hᵢ₊₁ = mix64(hᵢ + (i + 1)·γ + mix64(bits(xᵢ) + γ)), γ = `GOLDEN`.
 pub fn hash(numbers: &[f64]) -> u64 {
     let bits = |x: f64| (x + 0.0).to_bits();
     let step = |h: u64, (x, i): (&f64, u64)| {

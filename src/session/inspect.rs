@@ -1,5 +1,5 @@
 //! A scene as it was evaluated, printed: stable text for snapshots and eyes, JSON for programs. Both come from one tree of
-//! [`Entry`]s, so that they cannot disagree.
+//! `Entry`s, so that they cannot disagree.
 
 use crate::diag::{SourceMap, Span};
 use crate::math::Affine;

@@ -1,8 +1,8 @@
 //! Wavefront OBJ meshes: tobj reads the numbers, and what it lacks is built around it.
 //!
-//! The text is decoded whatever its encoding, and scanned once ([`scan`]): lines that tobj refuses or misreads without need
+//! The text is decoded whatever its encoding, and scanned once (`scan`): lines that tobj refuses or misreads without need
 //! are left out or mended, faces are checked with their places, smoothing groups and materials noted. tobj reads what is
-//! left ([`feed`]). Corners are joined into vertices, faces cut into triangles and missing normals computed ([`weld`]).
+//! left (`feed`). Corners are joined into vertices, faces cut into triangles and missing normals computed (`weld`).
 //! For a while the text, tobj's faces (about 130 bytes each) and the mesh (24 bytes a position and 12 a triangle) are in
 //! memory together: a million triangles (37 MB of text) take 0.55 s of one core and 235 MB at the peak.
 

@@ -1,5 +1,5 @@
 //! Text to syntax tree: a scan of the brackets cuts the text into runs of whole items, pest reads each run, the builder
-//! turns its pairs into the tree, and a run that cannot be read is mended item by item ([`recover`]).
+//! turns its pairs into the tree, and a run that cannot be read is mended item by item (`recover`).
 //!
 //! Nothing here looks up a name, and nothing here stops at the first fault.
 

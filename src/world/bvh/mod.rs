@@ -1,7 +1,7 @@
 //! A bounding-volume hierarchy over boxes. It never sees what is inside them: its builder takes boxes, its one traversal
 //! hands ranges of items to a closure.
 //!
-//! Boxes are f32 in the tree's own [`Frame`] (the tree's middle at 0, its size about 1), so that a small thing far from the
+//! Boxes are f32 in the tree's own `Frame` (the tree's middle at 0, its size about 1), so that a small thing far from the
 //! origin, and a scene at any scale, has boxes as tight as any other. They are rounded outward, rays are rounded so that they
 //! meet more rather than less, and so a box never hides what an exact test inside it would find.
 
