@@ -482,3 +482,10 @@ proptest! {
         prop_assert_eq!(comments(&once), comments(&text), "{}", once);
     }
 }
+
+#[test]
+fn a_lone_carriage_return_ends_a_line_for_the_layout_too() {
+    let laid_out = ogee::syntax::format::format("plane { diff\ruse 0.4 }\rball\r").expect("it can be read");
+    assert!(!laid_out.contains('\r'), "{laid_out:?}");
+    assert!(!laid_out.contains("diff  use"), "a flag and a property became one: {laid_out:?}");
+}
