@@ -63,7 +63,6 @@ const FAULTY: &[(&str, &str)] = &[
     ("if a = b { sphere { } } else { box { } }", "E0001"),
     ("if a and b { sphere { } }", "E0001"),
     ("while { sphere { } }", "E0001"),
-    ("else { sphere { } }", "E0001"),
     ("import foo", "E0001"),
     ("#declare R = 3;", "E0001"),
     ("print(\"a {1 + }\")", "E0001"),
