@@ -1,11 +1,13 @@
 //! Shapes as numbers, without spans: meshes, bases, curves and what is measured on them, patches; skeletons to come.
 
+pub mod any_curve;
 pub mod arc_length;
 pub mod basis;
 pub mod closest;
 pub mod curve;
 pub mod frame;
 pub mod function;
+pub mod measured;
 pub mod mesh;
 pub mod patch;
 pub mod path;

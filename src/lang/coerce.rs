@@ -1,7 +1,7 @@
 //! Values to the types of the table: whether a value is of a type, what it becomes there, and how to speak of both.
 
 pub use super::display::number;
-use super::table::{Context, Property, Reported, Type};
+use super::table::{Context, CurveOf, Property, Reported, Type};
 use super::value::Value;
 use crate::diag::Span;
 pub use crate::geometry::mesh::unit;
@@ -47,6 +47,8 @@ pub fn fits(ctx: &dyn Context, kind: Type, value: &Value) -> bool {
         Type::Object => matches!(value, Value::Object(_)),
         Type::Material => matches!(value, Value::Material(_)),
         Type::Transform => matches!(value, Value::Transform(_)),
+        Type::Point => matches!(value, Value::Number(_) | Value::Vector2(_) | Value::Vector3(_)),
+        Type::Curve(of) => matches!(value, Value::Curve(curve) if of.holds(curve.dimension())),
         Type::Function => matches!(value, Value::Function(_) | Value::Builtin(_)),
         Type::List => matches!(value, Value::List(_) | Value::Range(_)),
         Type::Any | Type::Unbuilt => true,
@@ -255,9 +257,19 @@ pub fn shown(value: &Value) -> String {
         Value::Pattern(_) => "a pattern".into(),
         Value::Camera(_) => "a camera".into(),
         Value::Render(_) => "a render block".into(),
+        Value::Curve(curve) => a_curve_of(curve.dimension()).into(),
         Value::Transform(_) => "a transform".into(),
         Value::Fragment(_) => "a group of properties".into(),
         Value::Word(word) => format!("the word `{word}`"),
+    }
+}
+
+/// A curve in words, by how many numbers its points have.
+fn a_curve_of(dimension: usize) -> &'static str {
+    match dimension {
+        1 => "a curve of numbers",
+        2 => "a curve of 2-vectors",
+        _ => "a curve of 3-vectors",
     }
 }
 
@@ -317,6 +329,11 @@ pub fn words(kind: Type) -> String {
         Type::Object => "an object".into(),
         Type::Material => "a material".into(),
         Type::Transform => "a transform".into(),
+        Type::Point => "a number, a 2-vector or a 3-vector".into(),
+        Type::Curve(CurveOf::Any) => "a curve".into(),
+        Type::Curve(CurveOf::Numbers) => a_curve_of(1).into(),
+        Type::Curve(CurveOf::Plane) => a_curve_of(2).into(),
+        Type::Curve(CurveOf::Space) => a_curve_of(3).into(),
         Type::Function => "a function".into(),
         Type::List => "a list".into(),
         Type::Any | Type::Unbuilt => "a value".into(),
@@ -386,6 +403,8 @@ fn sample(kind: Type) -> String {
         Type::Object => "sphere { radius 1 }".into(),
         Type::Material => "material { diffuse 0.5 }".into(),
         Type::Transform => "path.frame(0)".into(),
+        Type::Point => "<0, 0, 0>, <1, 2, 0>".into(),
+        Type::Curve(_) => "path".into(),
         Type::Function => "p => p.y".into(),
         Type::List => "[1, 2]".into(),
     }

@@ -86,6 +86,7 @@ fn write(out: &mut String, value: &Value, style: Style, depth: usize) {
         | Value::Pattern(_)
         | Value::Camera(_)
         | Value::Render(_)
+        | Value::Curve(_)
         | Value::Transform(_)
         | Value::Fragment(_) => out.push_str(&crate::lang::coerce::shown(value)),
     }

@@ -8,7 +8,7 @@ use super::table::{Builtin, Kind, Property, Role};
 use std::fmt::Write;
 
 /// The chapters of prose: the name by which `page` finds one, the title, the text.
-const PROSE: [(&str, &str, &str); 9] = [
+const PROSE: [(&str, &str, &str); 10] = [
     ("language", "The language", include_str!("reference/language.md")),
     ("expressions", "Expressions", include_str!("reference/expressions.md")),
     ("cameras", "Cameras and pictures", include_str!("reference/camera.md")),
@@ -16,6 +16,7 @@ const PROSE: [(&str, &str, &str); 9] = [
     ("materials", "Materials", include_str!("reference/materials.md")),
     ("patterns", "Patterns", include_str!("reference/patterns.md")),
     ("objects", "Objects", include_str!("reference/objects.md")),
+    ("curves", "Curves", include_str!("reference/curves.md")),
     ("unbuilt", "What is not built yet", include_str!("reference/unbuilt.md")),
     ("decisions", "Decisions", include_str!("reference/decisions.md")),
 ];
@@ -27,6 +28,7 @@ fn kinds_of_chapter(chapter: &str) -> Vec<&'static Kind> {
         "cameras" => named(&["camera", "render"]),
         "lights" => named(&["light"]),
         "materials" => named(&["material"]),
+        "curves" => named(&["spline"]),
         "objects" => {
             kinds::ALL.iter().copied().filter(|k| k.role == Role::Object && k.build.is_some()).collect()
         }

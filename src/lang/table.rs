@@ -222,6 +222,10 @@ pub enum Type {
     Material,
     /// A transform.
     Transform,
+    /// A number, a 2-vector or a 3-vector: what a curve runs through.
+    Point,
+    /// A curve through such points.
+    Curve(CurveOf),
     /// A function.
     Function,
     /// A list of anything.
@@ -230,6 +234,31 @@ pub enum Type {
     Any,
     /// A value of a part of the language that is not built yet.
     Unbuilt,
+}
+
+/// What a curve runs through.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum CurveOf {
+    /// Any points.
+    Any,
+    /// Numbers.
+    Numbers,
+    /// 2-vectors.
+    Plane,
+    /// 3-vectors.
+    Space,
+}
+
+impl CurveOf {
+    /// Whether a curve through points of so many numbers is one.
+    pub fn holds(self, dimension: usize) -> bool {
+        match self {
+            CurveOf::Any => true,
+            CurveOf::Numbers => dimension == 1,
+            CurveOf::Plane => dimension == 2,
+            CurveOf::Space => dimension == 3,
+        }
+    }
 }
 
 impl Type {

@@ -2,6 +2,7 @@
 
 use super::table::Builtin;
 use crate::diag::Span;
+use crate::geometry::any_curve::AnyCurve;
 use crate::math::Affine;
 use crate::scene::{Camera, Light, Material, Object, Pattern, RenderSettings};
 use glam::{DVec2, DVec3, DVec4};
@@ -43,6 +44,8 @@ pub enum Value {
     Camera(Arc<Camera>),
     /// A render block.
     Render(Arc<RenderSettings>),
+    /// A curve.
+    Curve(AnyCurve),
     /// An affine map.
     Transform(Rc<Affine>),
     /// Properties without a block: what a function of properties gives.

@@ -74,6 +74,20 @@ pub enum FormKind {
 /// what adding up steps may have cost.
 const DOMAIN_SLACK: f64 = 16.0;
 
+/// t, moved onto a domain where only rounding took it off. Errors: further outside, or NaN.
+#[inline]
+pub(crate) fn on_domain((start, end): (f64, f64), t: f64) -> Result<f64, CurveError> {
+    if t >= start && t <= end {
+        return Ok(t);
+    }
+    let slack = DOMAIN_SLACK * f64::EPSILON * start.abs().max(end.abs());
+    if t >= start - slack && t <= end + slack {
+        Ok(t.clamp(start, end))
+    } else {
+        Err(CurveError::OutsideDomain { t, start, end })
+    }
+}
+
 impl<P: Point> Curve<P> {
     /// First and last parameter.
     pub fn domain(&self) -> (f64, f64) {
@@ -107,14 +121,9 @@ impl<P: Point> Curve<P> {
     }
 
     /// t, moved onto the domain where only rounding took it off. Errors: further outside, or NaN.
+    #[inline]
     pub fn parameter(&self, t: f64) -> Result<f64, CurveError> {
-        let (start, end) = self.domain();
-        let slack = DOMAIN_SLACK * f64::EPSILON * start.abs().max(end.abs());
-        if t >= start - slack && t <= end + slack {
-            Ok(t.clamp(start, end))
-        } else {
-            Err(CurveError::OutsideDomain { t, start, end })
-        }
+        on_domain(self.domain(), t)
     }
 
     /// The piece that holds t; at a seam the one after it. Outside the domain the first or the last.

@@ -35,6 +35,7 @@ fn same(a: &Value, b: &Value) -> bool {
         (Value::Vector3(u), Value::Vector3(v)) => u == v,
         (Value::Vector4(u), Value::Vector4(v)) => u == v,
         (Value::Range(r), Value::Range(s)) => (r.start, r.step, r.len) == (s.start, s.step, s.len),
+        (Value::Curve(c), Value::Curve(d)) => c.same(d),
         (Value::Transform(s), Value::Transform(t)) => s == t,
         (Value::Function(f), Value::Function(g)) => Rc::ptr_eq(f, g),
         (Value::Builtin(f), Value::Builtin(g)) => std::ptr::eq(*f, *g),

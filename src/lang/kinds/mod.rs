@@ -11,6 +11,7 @@ mod objects;
 mod read;
 mod settings;
 mod shapes;
+pub mod splines;
 #[cfg(test)]
 mod tests;
 mod unbuilt;
@@ -42,7 +43,7 @@ pub static ALL: &[&Kind] = &[
     &shapes::TRIANGLE,
     &objects::MESH,
     &objects::GROUP,
-    &unbuilt::SPLINE,
+    &splines::SPLINE,
     &unbuilt::PATCH,
     &unbuilt::TUBE,
     &unbuilt::LATHE,

@@ -2,6 +2,7 @@
 //! fault of the table and not of the scene.
 
 use crate::diag::{Code, Diagnostic, Span};
+use crate::geometry::any_curve::AnyCurve;
 use crate::lang::coerce;
 use crate::lang::table::{Block, Context, Reported};
 use crate::lang::value::{Given, Value};
@@ -116,6 +117,14 @@ impl Block {
         match self.value(name)? {
             Value::Object(object) => Some(object.clone()),
             _ => unreachable!("checked to be an object"),
+        }
+    }
+
+    /// Its curve.
+    pub fn curve(&self, name: &str) -> Option<&AnyCurve> {
+        match self.value(name)? {
+            Value::Curve(curve) => Some(curve),
+            _ => unreachable!("checked to be a curve"),
         }
     }
 

@@ -213,7 +213,7 @@ mod building {
         let tube = object(make(&mut ctx, block("tube", &[("along", &[w("path")])])));
         assert!(matches!(&tube.shape, Shape::Group(nodes) if nodes.is_empty()));
         assert_eq!(ctx.codes(), ["W0308"]);
-        assert!(make(&mut Mock::default(), block("spline", &[("bezier", &[n(0.0)])])).is_err());
+        assert!(make(&mut Mock::default(), block("skeleton", &[])).is_err());
         assert_eq!(codes_of_unbuilt(), ["W0308", "E0301"]);
     }
 

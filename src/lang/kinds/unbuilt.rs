@@ -22,60 +22,6 @@ const fn open(kind: Kind) -> Kind {
     Kind { open: true, ..kind }
 }
 
-const CURVE_DATA: &str = "";
-
-/// A curve.
-pub static SPLINE: Kind = unbuilt(
-    "spline",
-    "A curve of numbers, 2-vectors, 3-vectors or colours. Exactly one of the data properties carries its points.",
-    "spline path { catmull_rom <0, 0, 0>, <1, 1, 0>, <2, 0, 0>, <3, 1, 0> }",
-    Role::Value,
-    &[
-        Property::new("bezier", ANY, CURVE_DATA, "cubic pieces that share end points: 3n + 1 points").many(),
-        Property::new("bspline", ANY, CURVE_DATA, "uniform cubic B-spline, at least 4 points").many(),
-        Property::new("hermite", ANY, CURVE_DATA, "cubic Hermite through the points, with `slopes`").many(),
-        Property::new("slopes", ANY, "", "derivatives at the points of `hermite`, one each").many(),
-        Property::new("catmull_rom", ANY, CURVE_DATA, "through the points, with `tension` and `alpha`")
-            .many(),
-        Property::new("natural", ANY, CURVE_DATA, "C2 through the points, with natural ends").many(),
-        Property::new("monomial", ANY, CURVE_DATA, "one piece: coefficients of 1, t, t² and t³").many(),
-        Property::new("points", ANY, CURVE_DATA, "one piece or a chain of fours in any `basis`").many(),
-        Property::new(
-            "basis",
-            &[&[Type::Word(&["bezier", "bspline", "hermite", "catmull_rom", "monomial"])], &[Type::List]],
-            "",
-            "of `points`: a name, or four 4-vectors, a row for each control point",
-        ),
-        Property::new(
-            "stride",
-            &[&[Type::Integer { min: 1 }]],
-            "1",
-            "how far `points` move on from piece to piece",
-        ),
-        Property::new("tension", &[&[Type::NUMBER]], "0", "of `catmull_rom`: 0 is loose, 1 straight"),
-        Property::new(
-            "alpha",
-            &[&[Type::Number { min: 0.0, max: 1.0 }]],
-            "0",
-            "of `catmull_rom`: 0 uniform, 0.5 centripetal, 1 chordal",
-        ),
-        Property::new(
-            "clamped",
-            &[&[], &[Type::Bool]],
-            "off",
-            "a `bspline` that reaches its first and last point",
-        ),
-        Property::new("closed", &[&[], &[Type::Bool]], "off", "the end runs into the start"),
-        Property::new(
-            "knots",
-            &[&[Type::NUMBER]],
-            "",
-            "breakpoints, strictly increasing, one more than the pieces",
-        )
-        .many(),
-    ],
-);
-
 /// A bicubic patch.
 pub static PATCH: Kind = unbuilt(
     "patch",
@@ -112,7 +58,7 @@ pub static PATCH: Kind = unbuilt(
 pub static TUBE: Kind = unbuilt(
     "tube",
     "A round tube along a curve, solid.",
-    "tube { along path  radius 0.1 }",
+    "spline path { natural x, y, z }\ntube { along path  radius 0.1 }",
     Role::Object,
     &[
         Property::new("along", ANY, "", "the curve of its centre").required(),
@@ -135,7 +81,7 @@ pub static TUBE: Kind = unbuilt(
 pub static LATHE: Kind = unbuilt(
     "lathe",
     "A surface of revolution about the y axis.",
-    "lathe { profile path  angle 360 }",
+    "spline path { natural <1, 0>, <0.5, 1>, <1, 2> }\nlathe { profile path  angle 360 }",
     Role::Object,
     &[
         Property::new("profile", ANY, "", "a curve of 2-vectors: distance from the y axis, and height")
@@ -159,7 +105,7 @@ pub static LATHE: Kind = unbuilt(
 pub static EXTRUDE: Kind = unbuilt(
     "extrude",
     "A closed outline moved along a path or a vector, solid.",
-    "extrude { outline path  along <0, 1, 0> }",
+    "spline path { natural <1, 0>, <0, 1>, <-1, 0>  closed }\nextrude { outline path  along <0, 1, 0> }",
     Role::Object,
     &[
         Property::new("outline", ANY, "", "a closed curve of 2-vectors").required(),
@@ -231,7 +177,7 @@ pub static DIFFERENCE: Kind = with_children(unbuilt(
 pub static SKIN: Kind = unbuilt(
     "skin",
     "A surface that bends with a skeleton.",
-    "skin { surface tube { along limb  radius 0.5 }  skeleton arm  pose touch }",
+    "spline limb { natural x, y, z }\nskin { surface tube { along limb  radius 0.5 }  skeleton arm  pose touch }",
     Role::Object,
     &[
         Property::new("surface", &[&[Type::Object]], "", "any mesh-like object, in rest position").required(),

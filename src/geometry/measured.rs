@@ -1,0 +1,169 @@
+//! A path together with what is measured on it, computed once when first asked for. Knows nothing of who asks.
+
+use super::arc_length::ArcLength;
+use super::closest::{Nearest, closest_sampled};
+use super::curve::{Curve, CurveError, Side, on_domain};
+use super::frame::{Frame, Frames};
+use super::function::FunctionPath;
+use super::path::Path;
+use crate::math::Point;
+use crate::math::quadrature::Integral;
+use glam::DVec3;
+use std::sync::OnceLock;
+
+/// What a path is made of.
+#[derive(Clone, Debug)]
+pub enum Made<P> {
+    /// Cubic pieces.
+    Spline(Curve<P>),
+    /// A function.
+    Function(FunctionPath<P>),
+}
+
+/// A path with its lengths and frames. Shared by all that hold it, on any thread.
+#[derive(Debug)]
+pub struct Measured<P> {
+    made: Made<P>,
+    lengths: OnceLock<ArcLength>,
+    frames: OnceLock<Frames>,
+}
+
+impl<P: Point> From<Curve<P>> for Measured<P> {
+    fn from(curve: Curve<P>) -> Self {
+        Measured::of(Made::Spline(curve))
+    }
+}
+
+impl<P: Point> From<FunctionPath<P>> for Measured<P> {
+    fn from(path: FunctionPath<P>) -> Self {
+        Measured::of(Made::Function(path))
+    }
+}
+
+impl<P: Point> Measured<P> {
+    fn of(made: Made<P>) -> Self {
+        Measured { made, lengths: OnceLock::new(), frames: OnceLock::new() }
+    }
+
+    /// What it is made of.
+    pub fn made(&self) -> &Made<P> {
+        &self.made
+    }
+
+    /// Its cubic pieces; none for a function.
+    pub fn spline(&self) -> Option<&Curve<P>> {
+        match &self.made {
+            Made::Spline(curve) => Some(curve),
+            Made::Function(_) => None,
+        }
+    }
+
+    /// As any path, without what was measured.
+    pub fn path(&self) -> &dyn Path<P> {
+        match &self.made {
+            Made::Spline(curve) => curve,
+            Made::Function(path) => path,
+        }
+    }
+
+    /// t, moved onto the domain where only rounding took it off. Errors: further outside, or NaN.
+    #[inline]
+    pub fn parameter(&self, t: f64) -> Result<f64, CurveError> {
+        match &self.made {
+            Made::Spline(curve) => curve.parameter(t),
+            Made::Function(path) => on_domain(path.domain(), t),
+        }
+    }
+
+    /// γ(t). Errors: outside the domain.
+    #[inline]
+    pub fn at(&self, t: f64) -> Result<P, CurveError> {
+        match &self.made {
+            Made::Spline(curve) => curve.at(t),
+            Made::Function(path) => Ok(path.position(on_domain(path.domain(), t)?)),
+        }
+    }
+
+    /// Lengths along it.
+    pub fn lengths(&self) -> &ArcLength {
+        self.lengths.get_or_init(|| ArcLength::of(self.path()))
+    }
+
+    /// The whole length, scene units, with its estimated error.
+    pub fn length(&self) -> Integral {
+        self.lengths().total()
+    }
+
+    /// Length from a to b, negative where b is before a, with its estimated error. Errors: outside the domain.
+    pub fn length_between(&self, a: f64, b: f64) -> Result<Integral, CurveError> {
+        let (a, b) = (self.parameter(a)?, self.parameter(b)?);
+        Ok(self.lengths().between(self.path(), a, b))
+    }
+
+    /// The parameter at a length from the start. Errors: below 0 or beyond the end.
+    pub fn parameter_at(&self, s: f64) -> Result<f64, CurveError> {
+        self.lengths().parameter_at(self.path(), s)
+    }
+
+    /// γ′, γ″ and γ‴ at t: at a seam those of the piece after it, at the end those before it. Errors: outside the domain.
+    pub fn derivatives(&self, t: f64) -> Result<[P; 3], CurveError> {
+        let t = self.parameter(t)?;
+        Ok(self.path().derivatives_from(t, self.side(t)))
+    }
+
+    /// The side from which limits are taken at t: ahead, and at the end behind.
+    pub fn side(&self, t: f64) -> Side {
+        if t == self.path().domain().1 { Side::Before } else { Side::After }
+    }
+
+    /// The point nearest to p; of several, the one with the least parameter.
+    pub fn closest(&self, p: P) -> Nearest<P> {
+        match &self.made {
+            Made::Spline(curve) => curve.closest(p),
+            Made::Function(path) => closest_sampled(path, p),
+        }
+    }
+}
+
+impl Measured<DVec3> {
+    /// The rotation-minimising frame at t, y as near to `up` at the start as it can be. Errors: outside the domain.
+    pub fn frame(&self, t: f64, up: DVec3) -> Result<Frame, CurveError> {
+        let t = self.parameter(t)?;
+        Ok(self.frames().at(self.path(), t, up))
+    }
+
+    /// Its frames.
+    pub fn frames(&self) -> &Frames {
+        self.frames.get_or_init(|| Frames::of(self.path()))
+    }
+}
+
+impl<P: Point> Path<P> for Measured<P> {
+    fn domain(&self) -> (f64, f64) {
+        self.path().domain()
+    }
+
+    fn closed(&self) -> bool {
+        self.path().closed()
+    }
+
+    fn position(&self, t: f64) -> P {
+        self.path().position(t)
+    }
+
+    fn derivatives_from(&self, t: f64, side: Side) -> [P; 3] {
+        self.path().derivatives_from(t, side)
+    }
+
+    fn speed(&self, t: f64) -> f64 {
+        self.path().speed(t)
+    }
+
+    fn still(&self, t: f64) -> f64 {
+        self.path().still(t)
+    }
+
+    fn cuts(&self) -> Vec<f64> {
+        self.path().cuts()
+    }
+}
