@@ -2,7 +2,7 @@
 //! is where they overlap, so that no ray slips through the rims.
 
 use super::disc::disc_bounds;
-use super::{LocalRay, Meet, Surface, padded, perpendicular, upright};
+use super::{LocalRay, Meet, Surface, ahead, padded, perpendicular, upright};
 use crate::math::Aabb;
 use crate::math::elementary::atan2;
 use crate::math::error::gamma;
@@ -75,6 +75,16 @@ impl Cone {
     }
 
     pub(super) fn meet(&self, ray: &LocalRay, limit: f64) -> Option<Meet> {
+        self.ends(ray).into_iter().flatten().find(|m| ahead(m.t)).filter(|m| m.t <= limit)
+    }
+
+    pub(super) fn crossings(&self, ray: &LocalRay, out: &mut Vec<Meet>) {
+        out.extend(self.ends(ray).into_iter().flatten().filter(|m| ahead(m.t)));
+    }
+
+    /// Where the ray enters and leaves, in order: once or, where it passes the apex' other side, twice.
+    #[inline(always)]
+    fn ends(&self, ray: &LocalRay) -> [Option<Meet>; 4] {
         let (d, axis) = (ray.direction, self.axis);
         let mut f = ray.origin - self.shape.from;
         let to_middle = axis * (self.height / 2.0) - f;
@@ -84,20 +94,19 @@ impl Cone {
         let (y, dy) = (f.dot(axis), d.dot(axis));
         let (p, dp) = (f - axis * y, d - axis * dy);
         let slab = self.slab(y, dy);
+        let mut ends = [None; 4];
         if slab.near.0 > slab.far.0 {
-            return None;
+            return ends;
         }
-        for part in self.double_cone(y, dy, p, dp) {
+        for (i, part) in self.double_cone(y, dy, p, dp).into_iter().enumerate() {
             let inside = part.overlap(slab);
             if inside.near.0 > inside.far.0 {
                 continue;
             }
-            let ends = [(start + inside.near.0, inside.near.1), (start + inside.far.0, inside.far.1)];
-            if let Some((t, face)) = ends.into_iter().find(|(t, _)| *t > 0.0 && t.is_finite()) {
-                return (t <= limit).then_some(Meet { t, face, ..Meet::default() });
-            }
+            let end = |(t, face): (f64, u32)| Some(Meet { t: start + t, face, ..Meet::default() });
+            (ends[2 * i], ends[2 * i + 1]) = (end(inside.near), end(inside.far));
         }
-        None
+        ends
     }
 
     /// Between the planes of the caps.

@@ -1,6 +1,6 @@
 //! Axis-aligned boxes: slabs by comparison, so that a ray in the plane of a side (0·∞) is decided and not lost.
 
-use super::{LocalRay, Meet, Surface};
+use super::{LocalRay, Meet, Surface, ahead};
 use crate::math::Aabb;
 use crate::math::error::gamma;
 use glam::{DVec2, DVec3};
@@ -21,6 +21,20 @@ fn face_of(axis: usize, upper: bool) -> u32 {
 
 impl Cuboid {
     pub(super) fn meet(&self, ray: &LocalRay, limit: f64) -> Option<Meet> {
+        let (near, far) = self.ends(ray)?;
+        let meet = if near.t > 0.0 { near } else { far };
+        (meet.t > 0.0 && meet.t <= limit).then_some(meet)
+    }
+
+    pub(super) fn crossings(&self, ray: &LocalRay, out: &mut Vec<Meet>) {
+        if let Some((near, far)) = self.ends(ray) {
+            out.extend([near, far].into_iter().filter(|meet| ahead(meet.t)));
+        }
+    }
+
+    /// Where the ray enters and leaves.
+    #[inline(always)]
+    fn ends(&self, ray: &LocalRay) -> Option<(Meet, Meet)> {
         let (mut near, mut far) = ((f64::NEG_INFINITY, 0), (f64::INFINITY, 0));
         for axis in 0..3 {
             let inverse = 1.0 / ray.direction[axis];
@@ -38,8 +52,8 @@ impl Cuboid {
         if near.0 > far.0 {
             return None;
         }
-        let (t, face) = if near.0 > 0.0 { near } else { far };
-        (t > 0.0 && t <= limit).then_some(Meet { t, face, ..Meet::default() })
+        let end = |(t, face)| Meet { t, face, ..Meet::default() };
+        Some((end(near), end(far)))
     }
 
     pub(super) fn surface(&self, ray: &LocalRay, meet: &Meet) -> Surface {

@@ -1,7 +1,7 @@
 //! Meshes as rays meet them: shared vertices, triangles in the order of their tree.
 
 use super::triangle::{Corners, Sheared, bounds_of, surface_of};
-use super::{Meet, Surface};
+use super::{LocalRay, Meet, Surface};
 use crate::geometry::mesh::Mesh;
 use crate::world::bvh::Tree;
 use glam::DVec3;
@@ -35,6 +35,26 @@ impl MeshShape {
     #[inline(always)]
     pub fn meet(&self, position: usize, ray: &Sheared, limit: f64) -> Option<Meet> {
         ray.meet(corners(&self.mesh, self.triangles[position]), limit)
+    }
+
+    /// Every meeting with t > 0, ascending, ties by triangle: as [`super::Shape::crossings`], with the triangle's number as the face.
+    ///
+    /// A ray through an edge or a corner of a closed mesh meets several triangles in one place. Each edge belongs to one of its two
+    /// triangles, by where it would lie were the ray moved by next to nothing; a meeting with another is a touch, and stands twice.
+    pub fn crossings(&self, ray: &LocalRay, out: &mut Vec<Meet>) {
+        let first = out.len();
+        let sheared = Sheared::new(ray);
+        self.tree.traverse(ray.origin, ray.direction, f64::MAX, |range, t_max| {
+            for position in range {
+                if let Some(meet) = self.meet(position, &sheared, f64::MAX) {
+                    let owned = sheared.is_owner(corners(&self.mesh, self.triangles[position]));
+                    let meet = Meet { face: self.triangle_at(position), ..meet };
+                    out.extend(std::iter::repeat_n(meet, if owned { 1 } else { 2 }));
+                }
+            }
+            t_max
+        });
+        out[first..].sort_by(|a, b| a.t.total_cmp(&b.t).then(a.face.cmp(&b.face)));
     }
 
     /// The triangle at a position of the tree's order, by its number in the mesh.

@@ -11,6 +11,8 @@ pub mod mesh;
 mod plane;
 mod rect;
 mod sphere;
+#[cfg(test)]
+mod tests;
 mod torus;
 pub mod triangle;
 
@@ -72,6 +74,11 @@ pub struct Meet {
     pub face: u32,
 }
 
+/// Whether a distance along a ray counts.
+fn ahead(t: f64) -> bool {
+    t > 0.0 && t.is_finite()
+}
+
 impl Meet {
     /// At a distance, with nothing else known.
     pub fn at(t: f64) -> Meet {
@@ -122,6 +129,24 @@ impl Shape {
             Shape::Cone(s) => s.meet(ray, limit),
             Shape::Torus(s) => s.meet(ray, limit),
             Shape::Triangle(s) => s.meet(ray, limit),
+        }
+    }
+
+    /// Every meeting with a finite t > 0, appended in ascending order; the first is the meeting that [`Shape::meet`] gives, to the bit.
+    ///
+    /// For a closed shape each passes from outside to inside or back, and where the ray only touches it the meeting stands twice.
+    /// So the ray starts inside exactly where the count is odd, and a walk over the list that toggles at each is never
+    /// wrong about the inside, whatever was rounded. A plane, closed at infinity, is inside at the ray's end where the ray goes
+    /// against its normal.
+    pub fn crossings(&self, ray: &LocalRay, out: &mut Vec<Meet>) {
+        match self {
+            Shape::Sphere(s) => s.crossings(ray, out),
+            Shape::Torus(s) => s.crossings(ray, out),
+            Shape::Cuboid(s) => s.crossings(ray, out),
+            Shape::Cone(s) => s.crossings(ray, out),
+            Shape::Plane(_) | Shape::Disc(_) | Shape::Rect(_) | Shape::Triangle(_) => {
+                out.extend(self.meet(ray, f64::MAX));
+            }
         }
     }
 

@@ -3,7 +3,7 @@
 //! Haines, Günther & Akenine-Möller, *Precision improvements for ray/sphere intersection*, Ray Tracing Gems ch. 7: the
 //! discriminant from the ray's distance to the centre, never from b² − 4ac.
 
-use super::{LocalRay, Meet, Surface, padded};
+use super::{LocalRay, Meet, Surface, ahead, padded};
 use crate::math::elementary::atan2;
 use crate::math::error::{UNIT_ROUNDOFF, gamma};
 use crate::math::exact::Double;
@@ -32,6 +32,12 @@ impl Sphere {
         let (near, far) = self.roots(ray)?;
         let t = if near > 0.0 { near } else { far };
         (t > 0.0 && t <= limit).then(|| Meet::at(t))
+    }
+
+    pub(super) fn crossings(&self, ray: &LocalRay, out: &mut Vec<Meet>) {
+        if let Some((near, far)) = self.roots(ray) {
+            out.extend([near, far].into_iter().filter(|t| ahead(*t)).map(Meet::at));
+        }
     }
 
     /// Both distances, in order.

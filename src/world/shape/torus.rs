@@ -1,7 +1,7 @@
 //! Tori: the quartic at the ray's point nearest to the centre, where its coefficients are of the torus's size whatever the distance,
 //! solved by isolated intervals.
 
-use super::{LocalRay, Meet, Surface, padded, perpendicular};
+use super::{LocalRay, Meet, Surface, ahead, padded, perpendicular};
 use crate::math::Aabb;
 use crate::math::elementary::atan2;
 use crate::math::error::gamma;
@@ -17,6 +17,22 @@ pub struct Torus {
     pub shape: scene::Torus,
     /// Perpendicular to the axis and to one another; u is 0 along the first.
     side: [DVec3; 2],
+}
+
+/// Σ cᵢsⁱ, negative within the torus (and positive again within a spindle's core), on −far … far.
+struct Quartic {
+    coefficients: [f64; 5],
+    far: f64,
+}
+
+impl Quartic {
+    fn roots(&self) -> Roots {
+        roots_between(&self.coefficients, -self.far, self.far)
+    }
+
+    fn value(&self, s: f64) -> f64 {
+        self.coefficients.iter().rev().fold(0.0, |sum, c| sum * s + c)
+    }
 }
 
 impl Torus {
@@ -43,6 +59,28 @@ impl Torus {
     }
 
     pub(super) fn meet(&self, ray: &LocalRay, limit: f64) -> Option<Meet> {
+        let (start, quartic) = self.quartic(ray)?;
+        let t = quartic.roots().iter().map(|s| start + s).find(|t| *t > 0.0)?;
+        (t <= limit).then(|| Meet::at(t))
+    }
+
+    pub(super) fn crossings(&self, ray: &LocalRay, out: &mut Vec<Meet>) {
+        let Some((start, quartic)) = self.quartic(ray) else { return };
+        let roots = quartic.roots();
+        let mut inside = false;
+        for (i, &root) in roots.iter().enumerate() {
+            // Beyond the last root all is outside, whatever the signs between say.
+            let inside_after = roots.get(i + 1).is_some_and(|next| quartic.value((root + next) / 2.0) < 0.0);
+            let times = if inside == inside_after { 2 } else { 1 };
+            inside = inside_after;
+            if ahead(start + root) {
+                out.extend(std::iter::repeat_n(Meet::at(start + root), times));
+            }
+        }
+    }
+
+    /// The ray's distance to the point nearest to the centre, and the quartic from there; none where it passes all of the torus by.
+    fn quartic(&self, ray: &LocalRay) -> Option<(f64, Quartic)> {
         let d = ray.direction;
         let from_center = ray.origin - self.shape.center;
         let start = -from_center.dot(d) / d.dot(d);
@@ -53,13 +91,11 @@ impl Torus {
         if nearest.length() > reach + doubt {
             return None;
         }
-        let roots = self.roots(self.upright(nearest), self.upright(d));
-        let t = roots.iter().map(|s| start + s).find(|t| *t > 0.0)?;
-        (t <= limit).then(|| Meet::at(t))
+        Some((start, self.quartic_from(self.upright(nearest), self.upright(d))))
     }
 
-    /// Distances from `p`, which is the ray's nearest point to the centre.
-    fn roots(&self, p: DVec3, d: DVec3) -> Roots {
+    /// Along the ray from `p`, which is its nearest point to the centre.
+    fn quartic_from(&self, p: DVec3, d: DVec3) -> Quartic {
         let [major, minor] = self.shape.radii;
         let flat = |v: DVec3| DVec2::new(v.x, v.y);
         let (alpha, beta) = (d.dot(d), p.dot(d));
@@ -76,8 +112,7 @@ impl Torus {
             alpha * alpha,
         ];
         // Everything lies within the sphere around it; a little more, so that its own rounding cuts nothing off.
-        let far = 1.0625 * self.reach() / alpha.sqrt();
-        roots_between(&coefficients, -far, far)
+        Quartic { coefficients, far: 1.0625 * self.reach() / alpha.sqrt() }
     }
 
     pub(super) fn surface(&self, ray: &LocalRay, meet: &Meet) -> Surface {

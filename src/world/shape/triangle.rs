@@ -89,6 +89,18 @@ impl Sheared {
         (t > 0.0 && t <= limit).then_some(Meet { t, a: v * inverse, b: w * inverse, face: 0 })
     }
 
+    /// Whether a triangle that the ray meets also holds the ray moved by (ε, ε²) across its axis, ε as small as it takes. Of two
+    /// triangles with a common edge one does, and of all those around a point of a closed surface as many go in as come out.
+    pub fn is_owner(&self, corners: [DVec3; 3]) -> bool {
+        let [a, b, c] = match self.z {
+            0 => corners.map(|p| self.corner::<0>(p)),
+            1 => corners.map(|p| self.corner::<1>(p)),
+            _ => corners.map(|p| self.corner::<2>(p)),
+        };
+        let [u, v, w] = [side(c, b), side(a, c), side(b, a)];
+        u != 0 && u == v && v == w
+    }
+
     /// From the triangle's plane through its nearest corner, for rays that start on or beside it.
     #[cold]
     fn distance_by_plane(&self, corners: [DVec3; 3]) -> Option<f64> {
@@ -99,6 +111,19 @@ impl Sheared {
             .min_by(|p, q| p.length_squared().total_cmp(&q.length_squared()))?;
         let t = n.dot(nearest) / n.dot(self.direction);
         t.is_finite().then_some(t)
+    }
+}
+
+/// The sign of p × q in the plane across the ray, exactly; where the ray goes through the edge, of the ray moved to (ε, ε²). 0 only for
+/// an edge that is a point there.
+fn side(p: [f64; 3], q: [f64; 3]) -> i32 {
+    let sign = |a: f64, b: f64| i32::from(a > b) - i32::from(a < b);
+    match sign(difference_of_products(p[0], q[1], p[1], q[0]), 0.0) {
+        0 => match sign(p[1], q[1]) {
+            0 => sign(q[0], p[0]),
+            across => across,
+        },
+        beside => beside,
     }
 }
 
