@@ -126,6 +126,9 @@ impl ArcLength {
 }
 
 #[cfg(test)]
+mod families;
+
+#[cfg(test)]
 mod tests {
     use super::*;
     use crate::geometry::curve::{CatmullRom, Curve, Ends};

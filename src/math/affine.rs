@@ -121,3 +121,65 @@ impl Affine {
         if b.is_empty() { b } else { Aabb::of(b.corners().map(|p| self.point(p))) }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::random::Random;
+
+    fn vector(r: &mut Random) -> DVec3 {
+        DVec3::new(r.between(-1.0, 1.0), r.between(-1.0, 1.0), r.between(-1.0, 1.0))
+    }
+
+    #[test]
+    fn a_normal_leans_against_the_stretch_and_knows_no_translation() {
+        let stretch = Affine::scale(DVec3::new(1.0, 1000.0, 1.0));
+        let n = DVec3::new(1.0, 1.0, 0.0).normalize();
+        let image = stretch.normal(n).normalize();
+        assert!((image - DVec3::new(1.0, 1e-3, 0.0).normalize()).length() < 1e-15, "{image}");
+        // The image by the matrix itself is almost perpendicular to it.
+        let wrong = stretch.vector(n).normalize().dot(image).acos().to_degrees();
+        assert!((wrong - 89.885).abs() < 1e-3, "{wrong}");
+        assert_eq!(Affine::translate(DVec3::new(5.0, 0.0, 0.0)).normal(DVec3::X), DVec3::X);
+    }
+
+    #[test]
+    fn normals_stay_across_tangents_and_outward_under_any_map() {
+        let mut random = Random::new(50);
+        for case in 0..2000 {
+            let factor = |r: &mut Random| r.sign() * crate::math::elementary::exp2(r.between(-10.0, 10.0));
+            let turn = |r: &mut Random| Affine::rotate(vector(r).normalize(), r.between(0.0, 360.0));
+            let scale = DVec3::new(factor(&mut random), factor(&mut random), factor(&mut random));
+            let map = turn(&mut random).then(&Affine::scale(scale)).then(&turn(&mut random));
+            let n = vector(&mut random).normalize();
+            let tangent = n.any_orthonormal_vector();
+            let image = map.normal(n).normalize();
+            // |M⁻ᵀn||Mt| is what the product's rounding is measured by.
+            let size = map.normal(n).length() * map.vector(tangent).length();
+            assert!(map.normal(n).dot(map.vector(tangent)).abs() <= 1e-14 * size * 1024.0, "case {case}");
+            let p = map.vector(n);
+            assert!(image.dot(p) > 0.0, "case {case}: inward, determinant {}", map.linear.determinant());
+        }
+    }
+
+    #[test]
+    fn composed_inverses_undo_maps_that_a_computed_inverse_would_not() {
+        let mut random = Random::new(51);
+        let mut by_elimination = 0.0f64;
+        for case in 0..500 {
+            let turn = Affine::rotate(vector(&mut random).normalize(), random.between(0.0, 360.0));
+            let squash = Affine::scale(DVec3::new(1e-6, 1.0, 1e6));
+            let map = turn.then(&squash).then(&turn.inverse());
+            let p = vector(&mut random);
+            let off = |inverse: DMat3| (inverse * map.point(p) - p).length() / p.length();
+            // 4uκ with κ = 10¹².
+            assert!(
+                off(map.inverse_linear) <= 4.0 * 1.11e-16 * 1e12,
+                "case {case}: {:e}",
+                off(map.inverse_linear)
+            );
+            by_elimination = by_elimination.max(off(map.linear.inverse()));
+        }
+        assert!(by_elimination > 4.0 * 1.11e-16 * 1e12, "{by_elimination:e}");
+    }
+}

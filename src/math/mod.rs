@@ -13,11 +13,13 @@ pub mod elementary;
 pub mod error;
 pub mod exact;
 pub mod field;
+pub mod hex;
 pub mod interval;
 pub mod isolate;
 pub mod noise;
 pub mod point;
 pub mod quadrature;
+pub mod random;
 pub mod solve;
 
 pub use affine::Affine;

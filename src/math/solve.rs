@@ -291,6 +291,9 @@ fn beside(x: f64, end: f64, probes: u32) -> f64 {
 }
 
 #[cfg(test)]
+mod families;
+
+#[cfg(test)]
 mod tests {
     use super::*;
 

@@ -1,20 +1,56 @@
 #!/usr/bin/env python3
-"""Arc lengths of cubics at hard places, to 20 digits.
+"""Arc lengths of plane cubics at hard places.
 
-    python3 tests/golden-numbers/lengths.py
+    python3 tests/golden-numbers/lengths.py > tests/golden-numbers/lengths.txt
+
+Each line: family, the eight coordinates of four Bezier points, the length as high + low; hexadecimal floats. The integral is
+mpmath's at 40 digits, cut at the least speeds and graded towards each cut.
 """
+import random
+
 from mpmath import mp, mpf, quad, sqrt, polyroots
 
 mp.dps = 40
+random.seed(20240613)
 
-CURVES = {
-    "cusp": [(0, 0), (1, 1), (0, 1), (1, 0)],
-    "line": [(0, 0), (2, 0), (-1, 0), (1, 0)],
-    "loop": [(0, 0), (2, 1), (-1, 1), (1, 0)],
-    "near cusp": [(0, 0), (1, 1), (1e-3, 1), (1, 0)],
-    "nearer cusp": [(0, 0), (1, 1), (1e-6, 1), (1, 0)],
-    "leaning cusp": [(0.3, 0.1), (3.3, 2.1), (-0.7, 2.1), (2.3, 0.1)],
-}
+ROWS = [
+    ("cusp", [(0, 0), (1, 1), (0, 1), (1, 0)]),
+    ("backtrack", [(0, 0), (2, 0), (-1, 0), (1, 0)]),
+    ("loop", [(0, 0), (2, 1), (-1, 1), (1, 0)]),
+    ("parabola", [(0, 0), (1 / 3, 0), (2 / 3, 1 / 3), (1, 1)]),
+    ("near-cusp", [(0, 0), (1, 1), (1e-3, 1), (1, 0)]),
+    ("near-cusp", [(0, 0), (1, 1), (1e-6, 1), (1, 0)]),
+    ("loop", [(0.3, 0.1), (3.3, 2.1), (-0.7, 2.1), (2.3, 0.1)]),
+]
+
+
+def point(reach):
+    return (random.uniform(-reach, reach), random.uniform(-reach, reach))
+
+
+def short(reach):
+    """A multiple of 1/64, so that sums of a few are exact."""
+    return round(random.uniform(-reach, reach) * 64) / 64
+
+
+def own_family():
+    for _ in range(8):
+        # A cusp under an exact linear map: points 0, x + y, y, x.
+        x, y = (short(1), short(1)), (short(1), short(1))
+        yield "cusp", [(0, 0), (x[0] + y[0], x[1] + y[1]), y, x]
+    for _ in range(12):
+        e = 10 ** random.uniform(-9, -1)
+        yield "near-cusp", [(0, 0), (1, 1), (e * random.choice((-1, 1)), 1), (1, 0)]
+    for _ in range(8):
+        d = (short(1), short(1))
+        yield "backtrack", [(d[0] * k, d[1] * k) for k in (0, *(random.randint(-3, 4) for _ in range(3)))]
+    for _ in range(8):
+        # A parabola, raised to a cubic exactly: thirds of sums that are multiples of three.
+        a, b, c = ((3 * short(0.3), 3 * short(0.3)) for _ in range(3))
+        yield "parabola", [a, *(((p[0] + 2 * q[0]) / 3, (p[1] + 2 * q[1]) / 3) for p, q in ((a, b), (c, b))), c]
+    for _ in range(16):
+        yield "loop", [point(1) for _ in range(4)]
+
 
 
 def monomial(d):
@@ -51,5 +87,8 @@ def length(points):
     return total
 
 
-for name, points in CURVES.items():
-    print(name, mp.nstr(length(points), 20))
+for family, points in [*ROWS, *own_family()]:
+    flat = [float(x) for p in points for x in p]
+    total = length(points)
+    high = float(total)
+    print(family, *(x.hex() for x in [*flat, high, float(total - mpf(high))]))

@@ -186,6 +186,29 @@ fn plain<P: Point, const N: usize>(points: &[Dd<P>; N], argument: impl Fn(usize)
     b[0]
 }
 
+/// The value in double-double throughout, by de Casteljau's algorithm: off by at most 2⁻¹⁰⁰ Σ |Pᵢ||Bᵢ(t)|. What the other methods
+/// are judged against.
+pub fn double_double(points: &[f64; 4], t: f64) -> Dd {
+    let (x, r) = (Dd::from(t), Dd::difference(1.0, t));
+    let mut b = points.map(Dd::from);
+    for level in (1..4).rev() {
+        for i in 0..level {
+            b[i] = b[i].times(r) + b[i + 1].times(x);
+        }
+    }
+    b[0]
+}
+
+/// Σ |Pᵢ||Bᵢ(t)|: what an error at t is measured by where the value itself cancels.
+pub fn magnitude(points: &[f64; 4], t: f64) -> f64 {
+    let (x, r) = (t.abs(), (1.0 - t).abs());
+    bernstein_sum(&points.map(f64::abs), x, r)
+}
+
+fn bernstein_sum(p: &[f64; 4], x: f64, r: f64) -> f64 {
+    (p[0] * (r * r * r) + p[1] * (3.0 * (r * r * x))) + (p[2] * (3.0 * (x * x * r)) + p[3] * (x * x * x))
+}
+
 /// Values of one cubic at many parameters, in Bernstein form: the fast one, for tessellation, within an ulp of max|P|.
 /// One coordinate a call, so that the loop is done in vector registers; `out` is as long as `ts`.
 pub fn batch(points: &[f64; 4], ts: &[f64], out: &mut [f64]) {

@@ -12,6 +12,10 @@ mod differential;
 mod edit;
 mod error;
 pub mod evaluate;
+#[cfg(test)]
+mod families;
+#[cfg(test)]
+mod laws;
 mod natural;
 mod piece;
 #[cfg(test)]

@@ -3,20 +3,8 @@
 use super::*;
 use crate::geometry::basis::Basis;
 use crate::math::error::UNIT_ROUNDOFF;
+use crate::math::hex::parse_hex;
 use glam::{DVec2, DVec3};
-
-/// A number as Python's `float.hex` writes it: `-0x1.8p+3`.
-pub(crate) fn hex_float(text: &str) -> f64 {
-    let (sign, rest) = text.strip_prefix('-').map_or((1.0, text), |rest| (-1.0, rest));
-    let (digits, exponent) = rest.strip_prefix("0x").unwrap().split_once('p').unwrap();
-    let (whole, fraction) = digits.split_once('.').unwrap_or((digits, ""));
-    let mantissa = u64::from_str_radix(&format!("{whole}{fraction}"), 16).unwrap() as f64;
-    let exponent = exponent.parse::<i32>().unwrap() - 4 * fraction.len() as i32;
-    // In two steps, since the mantissa of a subnormal is scaled from far above.
-    let half = exponent / 2;
-    let power = crate::math::elementary::exp2;
-    sign * mantissa * power(f64::from(half)) * power(f64::from(exponent - half))
-}
 
 struct Golden {
     family: &'static str,
@@ -33,7 +21,7 @@ fn goldens() -> Vec<Golden> {
         .map(|line| {
             let mut words = line.split(' ');
             let family = words.next().unwrap();
-            let n: Vec<f64> = words.map(hex_float).collect();
+            let n: Vec<f64> = words.map(|w| parse_hex(w).unwrap()).collect();
             Golden { family, t: n[0], points: [n[1], n[2], n[3], n[4]], high: n[5], low: n[6], size: n[7] }
         })
         .collect()

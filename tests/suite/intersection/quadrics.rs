@@ -187,20 +187,50 @@ fn all_hits(world: &World, start: &Ray) -> Vec<f64> {
 #[test]
 fn rays_that_touch_a_torus_hit_it_there_or_not_at_all() {
     let world = torus([1.0, 0.25]);
-    let through = all_hits(&world, &ray(DVec3::new(0.75, -5.0, 0.0), DVec3::Y));
-    assert!(
-        (through[0] - 4.0).abs() < 1e-11 && (through[through.len() - 1] - 6.0).abs() < 1e-11,
-        "{through:?}"
-    );
-    for t in &through[1..through.len() - 1] {
-        assert!((t - 5.0).abs() < 1e-6, "{through:?}");
+    let off_surface = |hit: f64, start: &Ray| {
+        let p = start.origin + start.direction * hit;
+        let ring = DVec3::new(p.x, p.y, 0.0).normalize();
+        ((p - ring).length() - 0.25).abs()
+    };
+    let inner = ray(DVec3::new(0.75, -5.0, 0.0), DVec3::Y);
+    let through = all_hits(&world, &inner);
+    for (t, truth) in [(through[0], 4.0), (through[through.len() - 1], 6.0)] {
+        assert!((t - truth).abs() < 1e-11, "{through:?}");
     }
-    for t in all_hits(&world, &ray(DVec3::new(1.0, -5.0, 0.25), DVec3::Y)) {
-        assert!((t - 5.0).abs() < 1e-4, "{t}");
+    for t in &through[1..through.len() - 1] {
+        assert!((t - 5.0).abs() < 1e-8 && off_surface(*t, &inner) <= 1e-9, "{through:?}");
+    }
+    let top = ray(DVec3::new(1.0, -5.0, 0.25), DVec3::Y);
+    for t in all_hits(&world, &top) {
+        assert!((t - 5.0).abs() < 1e-11, "{t}");
     }
     let below = all_hits(&world, &ray(DVec3::new(1.0, -5.0, 0.25 - 1e-8), DVec3::Y));
-    assert!((below[0] - 4.98810771869).abs() < 1e-10, "{below:?}");
-    assert!((below[below.len() - 1] - 5.01189228131).abs() < 1e-10, "{below:?}");
+    for (t, truth) in [(below[0], 4.988_107_718_69), (below[below.len() - 1], 5.011_892_281_31)] {
+        assert!((t - truth).abs() < 1e-11, "{below:?}");
+    }
+}
+
+#[test]
+fn tori_of_any_size_and_place_are_met_exactly_from_far_away() {
+    let mut random = Random(31);
+    for case in 0..2000 {
+        let minor = 0.05 + 0.9 * random.next();
+        let world = torus([1.0, minor]);
+        // A point of the surface that is seen from outside, and a start far along a direction above it.
+        let (around, over) = (360.0 * random.next(), 360.0 * random.next());
+        let turn = Affine::rotate(DVec3::Z, around);
+        let out = turn.vector(Affine::rotate(DVec3::Y, over).vector(DVec3::X));
+        let target = turn.vector(DVec3::X) + out * minor;
+        let away = (out + random.unit() * 0.5).normalize();
+        let origin = target + away * 10f64.powf(5.0 * random.next());
+        let toward = (target - origin).normalize();
+        let Some(hit) = world.closest(&ray(origin, toward)) else { panic!("case {case}: missed") };
+        let p = origin + toward * hit.t;
+        let ring = DVec3::new(p.x, p.y, 0.0).normalize();
+        let cosine = hit.normal.dot(toward).abs().max(1e-3);
+        let off = ((p - ring).length() - minor).abs() / cosine;
+        assert!(off <= 16.0 * ulp(hit.t.max(1.0)), "case {case}: {off:e} at {}", hit.t);
+    }
 }
 
 #[test]
