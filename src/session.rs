@@ -2,6 +2,7 @@
 //! and the loader, and turns a file into a scene with everything that is wrong with it.
 
 mod answer;
+pub mod dialogue;
 pub mod inspect;
 pub mod picture;
 mod run;
@@ -10,8 +11,8 @@ pub mod whole;
 use crate::diag::{Code, Diagnostic, SourceMap};
 use crate::scene::Scene;
 use crate::scene::assets::{DiskLoader, Loader};
+use dialogue::Reply;
 use run::Root;
-use std::io::Read;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -76,18 +77,18 @@ impl Session {
 
     /// Reads and evaluates a scene file and its imports. `-` reads standard input.
     pub fn evaluate_file(&mut self, path: &Path) -> Evaluated {
-        self.evaluate_path(path, None).evaluated
+        self.evaluate(&Root::File(path)).evaluated
     }
 
     /// Evaluates a text as if it were a file of this name (relative paths and imports start at its folder).
     pub fn evaluate_text(&mut self, name: &str, text: &str) -> Evaluated {
-        self.evaluate(Root::Text(Path::new(name), text), None).evaluated
+        self.evaluate(&Root::Text(Path::new(name), text)).evaluated
     }
 
     /// The same, and what the scene lacks as a whole is told too: a camera, a light, anything to see. A file that shows no
     /// sign of being meant for a picture lacks nothing.
     pub fn check_file(&mut self, path: &Path) -> Evaluated {
-        let mut outcome = self.evaluate_path(path, None);
+        let mut outcome = self.evaluate(&Root::File(path));
         let attempts = outcome.attempts;
         let sees = |d: &Diagnostic| match d.code {
             Code::NoCamera => !attempts.setting,
@@ -98,36 +99,22 @@ impl Session {
         outcome.evaluated
     }
 
-    /// Evaluates one expression, with the names of a file in scope where one is given.
+    /// Evaluates one expression, with the names of a file in scope where one is given, whole or in part.
     pub fn evaluate_expression(
         &mut self,
         text: &str,
         file: Option<&Path>,
     ) -> (Option<Answer>, Vec<Diagnostic>) {
-        let outcome = match file {
-            Some(path) => self.evaluate_path(path, Some(text)),
-            None => self.evaluate(Root::Nothing, Some(text)),
-        };
-        (outcome.answer, outcome.evaluated.diagnostics)
+        let replies = self.dialogue(None, |dialogue| {
+            let file = file.map(|path| dialogue.part_of_file(path));
+            file.into_iter().chain([dialogue.expression(text)]).collect::<Vec<_>>()
+        });
+        let nothing = |reply: &Reply| (!reply.failed).then(|| Answer::List(Vec::new()));
+        let answer = replies.last().and_then(|reply| reply.answer().cloned().or_else(|| nothing(reply)));
+        (answer, replies.into_iter().flat_map(|reply| reply.diagnostics).collect())
     }
 
-    fn evaluate_path(&mut self, path: &Path, question: Option<&str>) -> run::Outcome {
-        if path != Path::new("-") {
-            return self.evaluate(Root::File(path), question);
-        }
-        let mut bytes = Vec::new();
-        let read = std::io::stdin().lock().read_to_end(&mut bytes).map_err(|e| e.to_string());
-        let text = read.and_then(|_| String::from_utf8(bytes).map_err(|e| e.to_string()));
-        match text {
-            Ok(text) => self.evaluate(Root::Text(Path::new("-"), &text), question),
-            Err(error) => {
-                let message = format!("standard input cannot be read: {error}");
-                Diagnostic::new(Code::FileNotFound, None, message).into()
-            }
-        }
-    }
-
-    fn evaluate(&mut self, root: Root<'_>, question: Option<&str>) -> run::Outcome {
-        run::evaluate(&mut self.sources, &self.options, &*self.loader, root, question)
+    fn evaluate(&mut self, root: &Root<'_>) -> run::Outcome {
+        run::evaluate(&mut self.sources, &self.options, &*self.loader, root)
     }
 }

@@ -50,6 +50,8 @@ struct Source {
     name: String,
     text: Arc<str>,
     line_starts: Vec<u32>,
+    /// The number of its first line, from 0.
+    first_line: usize,
 }
 
 /// The files of a session, by [`SourceId`].
@@ -61,10 +63,21 @@ pub struct SourceMap {
 impl SourceMap {
     /// Adds a file under the name that diagnostics show. Sources are at most 4 GiB − 1; the loader refuses larger ones.
     pub fn add(&mut self, name: impl Into<String>, text: impl Into<Arc<str>>) -> SourceId {
+        self.add_from(name, text, 0)
+    }
+
+    /// Adds a text that is a part of something longer: `first_line` lines stand before it.
+    pub fn add_from(
+        &mut self,
+        name: impl Into<String>,
+        text: impl Into<Arc<str>>,
+        first_line: usize,
+    ) -> SourceId {
         let text = text.into();
         let line_starts =
             std::iter::once(0).chain(text.bytes().zip(1u32..).filter(|(b, _)| *b == b'\n').map(|(_, i)| i));
-        self.sources.push(Source { name: name.into(), line_starts: line_starts.collect(), text });
+        let line_starts = line_starts.collect();
+        self.sources.push(Source { name: name.into(), line_starts, text, first_line });
         SourceId(self.sources.len() as u32 - 1)
     }
 
@@ -92,10 +105,15 @@ impl SourceMap {
         }
         let line = source.line_starts.partition_point(|&start| start as usize <= offset);
         let start = source.line_starts[line - 1] as usize;
-        LineColumn { line, column: source.text[start..offset].chars().count() + 1 }
+        LineColumn { line: line + source.first_line, column: source.text[start..offset].chars().count() + 1 }
     }
 
-    /// The number of the line that holds a byte, from 0.
+    /// How many lines stand before a text that is a part of something longer; 0 for a file.
+    pub fn first_line(&self, id: SourceId) -> usize {
+        self.sources[id.0 as usize].first_line
+    }
+
+    /// The number of the line that holds a byte, from 0 at the text's own beginning.
     pub fn line_index(&self, id: SourceId, offset: usize) -> usize {
         self.sources[id.0 as usize].line_starts.partition_point(|&start| start as usize <= offset) - 1
     }
@@ -130,5 +148,8 @@ mod tests {
         assert_eq!(map.line_column(id, 2), LineColumn { line: 1, column: 2 });
         assert_eq!(map.line_column(id, 4), LineColumn { line: 2, column: 2 });
         assert_eq!(map.line_column(id, 99), LineColumn { line: 3, column: 1 });
+        let id = map.add_from("b", "x\ny", 4);
+        assert_eq!(map.line_column(id, 2), LineColumn { line: 6, column: 1 });
+        assert_eq!((map.line_index(id, 2), map.first_line(id)), (1, 4));
     }
 }

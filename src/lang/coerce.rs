@@ -273,6 +273,36 @@ fn a_curve_of(dimension: usize) -> &'static str {
     }
 }
 
+/// The sort of a value in words, without the value itself: "a number", "a list of 3 numbers".
+pub fn sort_of(value: &Value) -> String {
+    match value {
+        Value::Number(_) => "a number".into(),
+        Value::Bool(_) => "a truth value".into(),
+        Value::Text(_) => "a text".into(),
+        Value::Vector2(_) => "a 2-vector".into(),
+        Value::Vector3(_) => "a 3-vector".into(),
+        Value::Vector4(_) => "a 4-vector".into(),
+        Value::List(list) => sort_of_list(list),
+        _ => shown(value),
+    }
+}
+
+fn sort_of_list(list: &[Value]) -> String {
+    let count = format!("a list of {}", list.len());
+    let same = |first: &Value| {
+        let sort = std::mem::discriminant(first);
+        list.iter().all(|other| std::mem::discriminant(other) == sort)
+    };
+    match list.first() {
+        Some(Value::List(_)) | None => count,
+        Some(first) if list.len() > 1 && same(first) => {
+            let sort = sort_of(first);
+            format!("{count} {}s", sort.trim_start_matches("a ").trim_start_matches("an "))
+        }
+        Some(_) => count,
+    }
+}
+
 fn short_text(text: &str) -> String {
     let head: String = text.chars().take(24).collect();
     if head.len() == text.len() { format!("the text \"{text}\"") } else { format!("the text \"{head}…\"") }

@@ -347,6 +347,11 @@ impl Builtin {
         format!("{}({})", self.name, parameters.join(", "))
     }
 
+    /// Whether a call is made for what it says and gives the empty list, always: `print`.
+    pub fn gives_nothing(&self) -> bool {
+        self.example.1 == "[]"
+    }
+
     /// Whether a call gives a value, and not only a warning that it is not built yet.
     pub fn is_built(&self) -> bool {
         !matches!(self.body, BuiltinBody::NotBuilt)

@@ -6,3 +6,4 @@ pub mod ast;
 pub mod build;
 pub mod format;
 pub mod print;
+pub mod unfinished;

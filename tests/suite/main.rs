@@ -14,6 +14,7 @@ mod meshes;
 mod pictures;
 mod planted;
 mod radiometry;
+mod repl;
 mod run;
 mod slips;
 mod stage;

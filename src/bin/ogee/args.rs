@@ -34,8 +34,8 @@ pub enum Command {
     Check(Check),
     /// Print the value of an expression
     Eval(Eval),
-    /// Evaluate expressions again and again
-    Repl(Unbuilt),
+    /// Evaluate lines again and again, in one scope that stays
+    Repl(Repl),
     /// Print how a scene was read: its syntax tree
     Ast(Ast),
     /// Print what a scene evaluates to: its objects, lights and cameras
@@ -163,6 +163,19 @@ pub struct Eval {
     pub expression: String,
     /// A scene whose names the expression may use
     #[arg(long = "in", value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub file: Option<PathBuf>,
+    /// Print numbers to so many significant digits [default: as many as bring the same number back]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=100))]
+    pub digits: Option<u8>,
+    #[command(flatten)]
+    pub evaluation: Evaluation,
+}
+
+/// `ogee repl`.
+#[derive(Args)]
+pub struct Repl {
+    /// A scene whose names the lines may use; it is evaluated first
+    #[arg(value_hint = ValueHint::FilePath)]
     pub file: Option<PathBuf>,
     /// Print numbers to so many significant digits [default: as many as bring the same number back]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=100))]

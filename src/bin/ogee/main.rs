@@ -4,6 +4,8 @@ mod args;
 mod commands;
 mod interrupt;
 mod place;
+mod repl;
+mod reply;
 mod speech;
 
 use args::{Command, Ogee};
@@ -41,7 +43,7 @@ fn run(command: Command) -> Ended {
         Command::Explain(args) => commands::explain::run(&args),
         Command::Completions(args) => commands::shell::completions(&args),
         Command::Man(args) => commands::shell::man(&args),
-        Command::Repl(_) => Err(Failure::not_built("`ogee repl`")),
+        Command::Repl(args) => repl::run(&args),
         Command::Bench(_) => Err(Failure::not_built("`ogee bench`")),
     }
 }

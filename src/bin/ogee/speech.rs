@@ -87,6 +87,13 @@ pub fn show(diagnostics: &[Diagnostic], sources: &SourceMap) {
     }
 }
 
+/// The same without the line that counts them.
+pub fn show_uncounted(diagnostics: &[Diagnostic], sources: &SourceMap) {
+    if !diagnostics.is_empty() {
+        let _ = writeln!(std::io::stderr().lock(), "{}", human(diagnostics, sources, style()).trim_end());
+    }
+}
+
 /// An error of the system in its own words, without Rust's "(os error 13)".
 pub fn reason(error: &std::io::Error) -> String {
     let text = error.to_string();

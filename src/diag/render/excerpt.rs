@@ -18,6 +18,8 @@ pub(super) struct Excerpt {
     name: String,
     text: String,
     lines: Vec<Line>,
+    /// Lines that stand before the source's first.
+    first_line: usize,
 }
 
 /// A line of the excerpt.
@@ -40,8 +42,12 @@ impl Excerpt {
         width: usize,
     ) -> (Excerpt, Vec<Option<Range<usize>>>) {
         let spans: Vec<Range<usize>> = spans.iter().map(|span| visible(*span, sources)).collect();
-        let mut excerpt =
-            Excerpt { name: harmless(sources.name(id)).into_owned(), text: String::new(), lines: Vec::new() };
+        let mut excerpt = Excerpt {
+            name: harmless(sources.name(id)).into_owned(),
+            text: String::new(),
+            lines: Vec::new(),
+            first_line: sources.first_line(id),
+        };
         let mut places = vec![None; spans.len()];
         for (number, first) in wanted(id, &spans, sources) {
             let window = window(id, number, first, sources, width);
@@ -127,7 +133,7 @@ impl SourceCode for Excerpt {
             self.name.clone(),
             &self.text.as_bytes()[window.clone()],
             (window.start, window.len()).into(),
-            line.number,
+            self.first_line + line.number,
             // Only where the text of one span is asked for does miette look at the column.
             if before == 0 && after == 0 { column } else { 0 },
             self.lines[self.line_at(window.start)..].len().min(1 + last - first + before + after),

@@ -1,6 +1,6 @@
 //! What builders and builtins may ask of a run.
 
-use super::Evaluator;
+use super::{Evaluator, Said};
 use crate::diag::{Diagnostic, Span};
 use crate::lang::compile;
 use crate::lang::table::{Context, Outcome};
@@ -42,7 +42,7 @@ impl Context for Evaluator<'_> {
     }
 
     fn print(&mut self, text: String) {
-        self.printed.push(text);
+        self.said.push(Said::Printed(text));
     }
 
     fn sampled(
@@ -67,6 +67,6 @@ impl Context for Evaluator<'_> {
 
 impl compile::Host for Evaluator<'_> {
     fn global(&self, slot: u32) -> super::slots::Slot {
-        self.globals[slot as usize].clone()
+        self.standing.globals[slot as usize].clone()
     }
 }

@@ -76,7 +76,7 @@ impl<'p> Evaluator<'p> {
     pub(super) fn read(&mut self, access: Access, span: Span) -> Outcome {
         let slot = match access {
             Access::Local(slot) => &self.stack[self.base + slot as usize],
-            Access::Global(slot) => &self.globals[slot as usize],
+            Access::Global(slot) => &self.standing.globals[slot as usize],
             Access::Captured(slot) => match &self.captured {
                 Some(captured) => &captured[slot as usize],
                 None => &Slot::Unset,

@@ -6,6 +6,7 @@ use crate::lang::limits::{Limits, exceeded};
 use crate::lang::table::{Context, Outcome, Reported};
 use crate::lang::value::{Value, memory};
 use crate::scene::{Node, Shape};
+use std::sync::atomic::Ordering;
 
 /// What is left of each guard.
 pub(super) struct Guards {
@@ -18,6 +19,9 @@ pub(super) struct Guards {
 
 /// Groups inside groups, at most: later stages follow them by recursion, on stacks that are not sized for it.
 const DEEPEST_GROUP: u32 = 1000;
+
+/// How often a run looks whether it is asked to end: some microseconds apart.
+const TURNS_BETWEEN_LOOKS: u64 = 1 << 10;
 
 /// Stack that is kept free below the deepest call for what one call may nest: per level of brackets.
 const STACK_PER_LEVEL: usize = 8 << 10;
@@ -43,9 +47,19 @@ impl Evaluator<'_> {
         match self.guards.turns.checked_sub(1) {
             Some(left) => {
                 self.guards.turns = left;
+                if left % TURNS_BETWEEN_LOOKS == 0 {
+                    self.heed_cancel();
+                }
                 Ok(())
             }
             None => Err(self.too_many_turns(span)),
+        }
+    }
+
+    /// Where somebody asks for an end, no turn is left to any loop or call.
+    fn heed_cancel(&mut self) {
+        if self.run.cancel.is_some_and(|asked| asked.load(Ordering::Relaxed)) {
+            self.guards.turns = 0;
         }
     }
 
@@ -131,9 +145,9 @@ impl Evaluator<'_> {
             return Err(self.fail(said));
         }
         if depth > 1 {
-            self.depths.insert(children.as_ptr(), depth);
-        } else if !self.depths.is_empty() {
-            self.depths.remove(&children.as_ptr());
+            self.standing.depths.insert(children.as_ptr(), depth);
+        } else if !self.standing.depths.is_empty() {
+            self.standing.depths.remove(&children.as_ptr());
         }
         Ok(())
     }
@@ -141,7 +155,7 @@ impl Evaluator<'_> {
     fn depth_of(&self, node: &Node) -> u32 {
         let Node::Object(object) = node else { return 0 };
         match &object.shape {
-            Shape::Group(children) => self.depths.get(&children.as_ptr()).copied().unwrap_or(1),
+            Shape::Group(children) => self.standing.depths.get(&children.as_ptr()).copied().unwrap_or(1),
             _ => 0,
         }
     }

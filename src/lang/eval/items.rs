@@ -1,11 +1,12 @@
 //! Items: they bind names, produce properties and nodes, and decide what runs next.
 
 use super::slots::{Captured, Closure, Slot};
-use super::{Around, Evaluator, Flow, Produced};
+use super::{Around, Evaluator, Flow, Produced, Said};
 use crate::diag::{Code, Diagnostic, Span};
 use crate::lang::coerce::shown;
 use crate::lang::resolve::program::{
-    Access, Body, Capture, Expr, For, FunctionId, Functions, If, Item, ItemKind, Property, UnitId, While,
+    Access, Body, Capture, Expr, ExprKind, For, FunctionId, Functions, If, Item, ItemKind, Property, UnitId,
+    While,
 };
 use crate::lang::table::{Context, Outcome, Reported};
 use crate::lang::value::{Given, Value};
@@ -43,7 +44,9 @@ impl<'p> Evaluator<'p> {
             ItemKind::Block(block) => self.block_item(block, out)?,
             ItemKind::Place(value) => {
                 let placed = self.expr(value)?;
-                self.place(placed, value, out)?;
+                if self.run.answers != Some(value.span.source) || self.answer(&placed, value, out) {
+                    self.place(placed, value, out)?;
+                }
             }
             ItemKind::If(choice) => return self.choice(choice, out),
             ItemKind::For(turns) => return self.for_item(turns, item.span, out),
@@ -63,10 +66,34 @@ impl<'p> Evaluator<'p> {
         Ok(Flow::On)
     }
 
+    /// Answers an expression with its value; whether it is to be placed too.
+    fn answer(&mut self, value: &Value, written: &Expr, out: &Produced) -> bool {
+        if out.around != Around::Top {
+            return true;
+        }
+        let gives_nothing = match (&written.kind, value) {
+            (ExprKind::CallBuiltin(call), _) => call.builtin.gives_nothing(),
+            (_, Value::Fragment(fragment)) => fragment.properties.is_empty(),
+            _ => false,
+        };
+        if !gives_nothing {
+            self.said.push(Said::Answer(value.clone()));
+        }
+        let mut waiting = vec![value];
+        while let Some(value) = waiting.pop() {
+            match value {
+                Value::List(list) => waiting.extend(list.iter()),
+                Value::Object(_) | Value::Light(_) | Value::Camera(_) | Value::Render(_) => {}
+                _ => return false,
+            }
+        }
+        true
+    }
+
     fn slot(&mut self, access: Access) -> &mut Slot {
         match access {
             Access::Local(slot) => &mut self.stack[self.base + slot as usize],
-            Access::Global(slot) => &mut self.globals[slot as usize],
+            Access::Global(slot) => &mut self.standing.globals[slot as usize],
             Access::Captured(_) | Access::Sibling(_) => unreachable!("names are declared in their own frame"),
         }
     }
@@ -105,7 +132,7 @@ impl<'p> Evaluator<'p> {
         match access {
             Access::Captured(slot) => {
                 if let Some(Slot::Shared(cell)) = self.captured.as_ref().map(|c| &c[slot as usize]) {
-                    *cell.borrow_mut() = value;
+                    self.standing.assign_shared(cell, value);
                 }
             }
             Access::Local(_) | Access::Global(_) | Access::Sibling(_) => self.slot(access).assign(value),
@@ -261,7 +288,7 @@ impl<'p> Evaluator<'p> {
 
     /// Runs an imported unit, the first time, and keeps its group for `t.scene`.
     fn import(&mut self, id: UnitId, span: Span) -> Outcome<()> {
-        if self.units_done[id.0 as usize] {
+        if self.standing.units_done[id.0 as usize] {
             return Ok(());
         }
         let (top, nodes) = self.unit(id);
@@ -280,7 +307,7 @@ impl<'p> Evaluator<'p> {
         }
         let group = Object::new(Shape::Group(nodes.into()), span);
         if let Some(slot) = self.program.units[id.0 as usize].scene {
-            self.globals[slot as usize] = Slot::Value(Value::Object(Arc::new(group)));
+            self.standing.globals[slot as usize] = Slot::Value(Value::Object(Arc::new(group)));
         }
         if top.attempts.failed { Err(Reported) } else { Ok(()) }
     }
@@ -335,7 +362,6 @@ impl<'p> Evaluator<'p> {
 
     #[cold]
     fn not_placeable(&mut self, value: &Value, written: &Expr) -> Reported {
-        use crate::lang::resolve::program::ExprKind;
         let said = Diagnostic::new(
             Code::NotPlaceable,
             written.span,

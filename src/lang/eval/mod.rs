@@ -16,6 +16,7 @@ mod numbers;
 pub mod operators;
 mod report;
 pub mod slots;
+mod undo;
 
 pub(super) use equal::equal;
 pub(super) use fields::{components, letters, place, swizzle};
@@ -25,13 +26,15 @@ use super::resolve::load::Files;
 use super::resolve::program::{FunctionId, Program, UnitId};
 use super::table::{Outcome, Reported};
 use super::value::{Given, Value};
-use crate::diag::{Sink, Span};
+use crate::diag::{Sink, SourceId, Span};
 use crate::scene::assets::Loader;
 use crate::scene::{Camera, Node, RenderSettings, Scene};
 use guards::Guards;
 use slots::{Captured, Slot};
 use std::collections::HashMap;
 use std::rc::Rc;
+use std::sync::atomic::AtomicBool;
+use undo::Undo;
 
 /// What a run is given.
 pub struct Run<'p> {
@@ -47,6 +50,30 @@ pub struct Run<'p> {
     pub time: (f64, f64),
     /// How many bytes of stack this thread may use.
     pub stack: usize,
+    /// The source whose items that are expressions are answered with their values, beside being placed.
+    pub answers: Option<SourceId>,
+    /// Asks the run to end soon.
+    pub cancel: Option<&'p AtomicBool>,
+}
+
+/// What stays from run to run where a program grows.
+#[derive(Default)]
+pub struct Standing {
+    /// Values of the top-level names of all units, by their global slots.
+    pub globals: Vec<Slot>,
+    units_done: Vec<bool>,
+    /// How deep groups of groups are nested, by the address of their children.
+    depths: HashMap<*const Node, u32>,
+    undo: Option<Undo>,
+}
+
+/// Something that a run says by the way.
+#[derive(Clone, Debug)]
+pub enum Said {
+    /// By `print`.
+    Printed(String),
+    /// The value of an expression that stands as an item of [`Run::answers`].
+    Answer(Value),
 }
 
 /// What a run gives.
@@ -54,10 +81,8 @@ pub struct Run<'p> {
 pub struct Ran {
     /// What could be made.
     pub scene: Scene,
-    /// The value of the question, where there was one.
-    pub answer: Option<Value>,
-    /// What `print` said.
-    pub printed: Vec<String>,
+    /// What was said on the way, in order.
+    pub said: Vec<Said>,
     /// What was tried, also where it failed.
     pub attempts: Attempts,
 }
@@ -71,18 +96,32 @@ pub struct Attempts {
     pub setting: bool,
 }
 
-/// Runs a program.
-pub fn run(run: &Run<'_>, sink: &mut Sink) -> Ran {
-    let mut evaluator = Evaluator::new(run, sink);
-    let mut ran = Ran::default();
+/// Runs the first unit of a program.
+pub fn run(run: &Run<'_>, standing: &mut Standing, sink: &mut Sink) -> Ran {
+    let mut evaluator = Evaluator::new(run, std::mem::take(standing), sink);
     let (top, nodes) = evaluator.unit(UnitId(0));
-    if let Some(question) = &run.program.question {
-        ran.answer = evaluator.ask(question);
-    }
-    ran.scene = Scene { nodes, cameras: top.cameras, render: top.render.unwrap_or_default() };
-    ran.attempts = top.attempts;
-    ran.printed = std::mem::take(&mut evaluator.printed);
+    let ran = Ran {
+        scene: Scene { nodes, cameras: top.cameras, render: top.render.unwrap_or_default() },
+        attempts: top.attempts,
+        said: std::mem::take(&mut evaluator.said),
+    };
+    *standing = evaluator.standing;
     ran
+}
+
+/// Calls a function value from outside a program. Faults are in the sink.
+pub fn call(
+    run: &Run<'_>,
+    standing: &mut Standing,
+    function: &Value,
+    arguments: &[Value],
+    at: Span,
+    sink: &mut Sink,
+) -> Outcome {
+    let mut evaluator = Evaluator::new(run, std::mem::take(standing), sink);
+    let value = evaluator.call_with_values(function, arguments, at);
+    *standing = evaluator.standing;
+    value
 }
 
 /// What belongs to a scene as a whole.
@@ -140,46 +179,41 @@ struct Evaluator<'p> {
     stack: Vec<Slot>,
     base: usize,
     captured: Option<Rc<Captured>>,
-    globals: Vec<Slot>,
-    units_done: Vec<bool>,
+    standing: Standing,
     calls: Vec<Call>,
     returned: Option<Outcome>,
-    /// How deep groups of groups are nested, by the address of their children.
-    depths: HashMap<*const Node, u32>,
     /// A value that the fast path of numbers could not carry.
     spilled: Outcome,
     top: Top,
     guards: Guards,
     sink: &'p mut Sink,
-    printed: Vec<String>,
+    said: Vec<Said>,
 }
 
 impl<'p> Evaluator<'p> {
-    fn new(run: &'p Run<'p>, sink: &'p mut Sink) -> Self {
-        let mut globals = Vec::new();
-        globals.resize_with(run.program.globals.len(), Slot::default);
+    fn new(run: &'p Run<'p>, mut standing: Standing, sink: &'p mut Sink) -> Self {
+        standing.globals.resize_with(run.program.globals.len(), Slot::default);
+        standing.units_done.resize(run.program.units.len(), false);
         Evaluator {
             run,
             program: run.program,
             stack: Vec::new(),
             base: 0,
             captured: None,
-            globals,
-            units_done: vec![false; run.program.units.len()],
+            standing,
             calls: Vec::new(),
             returned: None,
-            depths: HashMap::new(),
             spilled: Err(Reported),
             top: Top::default(),
             guards: Guards::new(&run.limits, run.stack),
             sink,
-            printed: Vec::new(),
+            said: Vec::new(),
         }
     }
 
     /// Runs a unit in a frame of its own: what belongs to the scene, and what it places.
     fn unit(&mut self, id: UnitId) -> (Top, Vec<Node>) {
-        self.units_done[id.0 as usize] = true;
+        self.standing.units_done[id.0 as usize] = true;
         let unit = &self.program.units[id.0 as usize];
         let around = std::mem::take(&mut self.top);
         let (base, captured) = (self.base, self.captured.take());
@@ -194,10 +228,5 @@ impl<'p> Evaluator<'p> {
         let mut top = std::mem::replace(&mut self.top, around);
         top.attempts.failed |= out.failed;
         (top, out.nodes)
-    }
-
-    /// An expression in the frame of the root unit.
-    fn ask(&mut self, question: &'p super::resolve::program::Expr) -> Option<Value> {
-        self.expr(question).ok()
     }
 }

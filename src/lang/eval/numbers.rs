@@ -44,7 +44,7 @@ impl<'p> Evaluator<'p> {
     fn slot_of(&self, access: Access) -> Option<&Slot> {
         match access {
             Access::Local(slot) => Some(&self.stack[self.base + slot as usize]),
-            Access::Global(slot) => Some(&self.globals[slot as usize]),
+            Access::Global(slot) => Some(&self.standing.globals[slot as usize]),
             Access::Captured(slot) => self.captured.as_ref().map(|c| &c[slot as usize]),
             Access::Sibling(_) => None,
         }

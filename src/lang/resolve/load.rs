@@ -32,6 +32,8 @@ pub struct Files {
     pub imports: HashMap<Span, FileId>,
     /// Each source's path, as paths are joined to it.
     pub paths: HashMap<SourceId, PathBuf>,
+    /// What is read already, by path; none where it could not be.
+    by_path: HashMap<PathBuf, Option<FileId>>,
 }
 
 impl Files {
@@ -45,7 +47,24 @@ impl Files {
         frames
     }
 
-    /// Frees the syntax trees: once names are resolved nothing needs them.
+    /// How many files there are and by which paths they are known, to come back to.
+    pub fn mark(&self) -> FilesMark {
+        FilesMark { n_files: self.files.len(), by_path: self.by_path.clone() }
+    }
+
+    /// Forgets all that was read since the mark was taken.
+    pub fn forget_since(&mut self, mark: FilesMark) {
+        self.files.truncate(mark.n_files);
+        self.imports.retain(|_, file| file.0 < mark.n_files);
+        self.by_path = mark.by_path;
+    }
+
+    /// Lets every file be read again when it is next asked for.
+    pub fn forget_paths(&mut self) {
+        self.by_path.clear();
+    }
+
+    /// Frees the syntax trees: once names are resolved nothing needs them, unless more items come.
     pub fn forget_trees(&mut self) {
         self.files.iter_mut().for_each(|file| file.tree.items = Vec::new());
     }
@@ -55,6 +74,12 @@ impl Files {
         let folder = self.paths.get(&at.source).and_then(|p| p.parent());
         folder.map_or_else(|| PathBuf::from(written), |folder| folder.join(written))
     }
+}
+
+/// See [`Files::mark`].
+pub struct FilesMark {
+    n_files: usize,
+    by_path: HashMap<PathBuf, Option<FileId>>,
 }
 
 /// Reads files and their imports.
@@ -68,21 +93,10 @@ pub struct Reading<'a> {
     /// Where faults go.
     pub sink: &'a mut Sink,
     /// What was read.
-    pub files: Files,
-    by_path: HashMap<PathBuf, Option<FileId>>,
+    pub files: &'a mut Files,
 }
 
 impl<'a> Reading<'a> {
-    /// Nothing read yet.
-    pub fn new(
-        loader: &'a dyn Loader,
-        sources: &'a mut SourceMap,
-        limits: Limits,
-        sink: &'a mut Sink,
-    ) -> Self {
-        Reading { loader, sources, limits, sink, files: Files::default(), by_path: HashMap::new() }
-    }
-
     /// Reads a root file. None where it cannot be read, which is reported.
     pub fn root_file(&mut self, path: &Path) -> Option<FileId> {
         let text = self.read(path, None)?;
@@ -94,6 +108,11 @@ impl<'a> Reading<'a> {
         self.add(path, text, None, &mut Vec::new())
     }
 
+    /// Takes items that are parsed already as a root file of this path.
+    pub fn root_tree(&mut self, path: &Path, source: SourceId, tree: ast::File) -> FileId {
+        self.add_tree(path, (source, tree, Vec::new()), None, &mut Vec::new())
+    }
+
     fn add(
         &mut self,
         path: &Path,
@@ -102,13 +121,23 @@ impl<'a> Reading<'a> {
         chain: &mut Vec<(PathBuf, Span)>,
     ) -> FileId {
         let source = self.sources.add(path.to_string_lossy(), text);
-        let (tree, faults) = parse_file(source, text, ParseLimits { depth: self.limits.nesting });
+        let (tree, faults) = parse_file(source, text, ParseLimits::nesting(self.limits.nesting));
+        self.add_tree(path, (source, tree, faults), imported_by, chain)
+    }
+
+    fn add_tree(
+        &mut self,
+        path: &Path,
+        (source, tree, faults): (SourceId, ast::File, Vec<Diagnostic>),
+        imported_by: Option<Span>,
+        chain: &mut Vec<(PathBuf, Span)>,
+    ) -> FileId {
         let id = FileId(self.files.files.len());
         let mut imports = Vec::new();
         collect_imports(&tree.items, &mut imports);
         self.files.files.push(LoadedFile { tree, source, imported_by });
         self.files.paths.insert(source, path.to_owned());
-        self.by_path.insert(normal(path), Some(id));
+        self.files.by_path.insert(normal(path), Some(id));
         for fault in faults {
             self.report(fault);
         }
@@ -126,13 +155,13 @@ impl<'a> Reading<'a> {
         if let Some(start) = chain.iter().position(|(file, _)| *file == key) {
             return self.report_cycle(&chain[start..], import.path_span);
         }
-        let id = match self.by_path.get(&key) {
+        let id = match self.files.by_path.get(&key) {
             Some(known) => *known,
             None => self
                 .read(&path, Some(import.path_span))
                 .map(|text| self.add(&path, &text, Some(import.path_span), chain)),
         };
-        self.by_path.insert(key, id);
+        self.files.by_path.insert(key, id);
         if let Some(id) = id {
             self.files.imports.insert(import.path_span, id);
         }

@@ -7,6 +7,7 @@ mod blocks;
 mod calls;
 mod expressions;
 mod items;
+pub mod known;
 pub mod load;
 pub mod program;
 mod scope;
@@ -17,6 +18,7 @@ use super::limits::Limits;
 use super::value::Value;
 use crate::diag::{Code, Diagnostic, Sink, Span};
 use crate::syntax::ast;
+use known::{Known, Names};
 use load::{FileId, Files};
 use program::{Access, Body, Program, Unit, UnitId, Word};
 use scope::{Declared, Owner, Scopes, Variable};
@@ -34,33 +36,38 @@ pub struct Setting<'a> {
     pub frame: f64,
 }
 
-/// Resolves a program. `question` is an expression to be evaluated in the root's scope, after it.
-pub fn resolve<'a>(
-    files: &'a Files,
-    setting: &'a Setting<'a>,
-    question: Option<&'a ast::Expr>,
-    sink: &'a mut Sink,
-) -> Program {
+/// Resolves a file into what is known already: its items become the first unit of the program. Gives the names that are
+/// visible after it; they are for [`Known::learn`].
+pub fn resolve(
+    known: &mut Known,
+    files: &Files,
+    root: FileId,
+    setting: &Setting<'_>,
+    sink: &mut Sink,
+) -> Names {
+    let before = std::mem::take(&mut known.names);
+    let mut program = std::mem::take(&mut known.program);
     let mut resolver = Resolver {
         files,
         setting,
         sink,
-        scopes: Scopes::default(),
-        program: Program::default(),
-        signatures: Vec::new(),
+        scopes: Scopes::with_globals(std::mem::take(&mut program.globals)),
+        program,
+        signatures: std::mem::take(&mut known.signatures),
         words: HashMap::new(),
-        units: HashMap::new(),
-        exports: HashMap::new(),
-        included: Vec::new(),
+        units: std::mem::take(&mut known.units),
+        exports: std::mem::take(&mut known.exports),
+        included: std::mem::take(&mut known.included),
         unknown_names: false,
         at_root: true,
         used_settings: HashSet::new(),
     };
-    resolver.root(question);
-    resolver.report_unknown_settings();
-    let mut program = resolver.program;
-    program.globals = resolver.scopes.globals;
-    program
+    let names = resolver.root(root, &before.0);
+    resolver.report_unknown_settings(root);
+    let Resolver { program, scopes, signatures, units, exports, included, .. } = resolver;
+    let program = Program { globals: scopes.globals, ..program };
+    *known = Known { program, signatures, units, exports, included, names: before };
+    Names(names)
 }
 
 /// What a call must know of a function before its body is resolved.
@@ -111,21 +118,24 @@ struct Resolver<'a> {
 }
 
 impl<'a> Resolver<'a> {
-    fn root(&mut self, question: Option<&'a ast::Expr>) {
+    /// The items of a root file as the first unit, in a scope inside that of the names that were known before. Gives all
+    /// names that are known after it.
+    fn root(&mut self, file: FileId, before: &'a Exports) -> Exports {
         let captures = self.scopes.new_captures();
         self.scopes.enter(Owner::Unit, captures);
-        self.program.units.push(Unit { body: Body::default(), n_slots: 0, scene: None });
-        let items = match self.files.files.first() {
-            Some(_) => self.flatten_file(FileId(0)),
-            None => Vec::new(),
-        };
+        if self.program.units.is_empty() {
+            self.program.units.push(Unit { body: Body::default(), n_slots: 0, scene: None });
+        }
+        let items = self.flatten_file(file);
+        self.scopes.open_known(before.iter().map(|(name, meaning)| (&**name, *meaning)));
         self.scopes.open(items, true);
         let body = self.scope_items(Place::Top);
-        self.program.question = question.map(|e| self.expr(e));
+        let names = self.collect_exports();
+        self.scopes.close();
         self.scopes.close();
         let n_slots = self.scopes.leave();
         self.program.units[0] = Unit { body, n_slots, scene: None };
-        self.program.n_slots = n_slots;
+        names
     }
 
     /// The unit of a file that is imported `as` something.
@@ -258,8 +268,8 @@ impl<'a> Resolver<'a> {
         self.report(said);
     }
 
-    fn report_unknown_settings(&mut self) {
-        let lets: Vec<&str> = self.files.files.first().map_or(Vec::new(), |f| {
+    fn report_unknown_settings(&mut self, root: FileId) {
+        let lets: Vec<&str> = self.files.files.get(root.0).map_or(Vec::new(), |f| {
             f.tree
                 .items
                 .iter()

@@ -18,10 +18,6 @@ pub struct Program {
     pub units: Vec<Unit>,
     /// Names of the slots of all units' top levels, by [`Access::Global`], with their places.
     pub globals: Vec<(Word, Span)>,
-    /// An expression that is evaluated after the root unit, in its scope.
-    pub question: Option<Expr>,
-    /// How many slots the root unit's frame needs, the question's included.
-    pub n_slots: u32,
 }
 
 /// Index into [`Program::functions`].

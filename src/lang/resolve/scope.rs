@@ -98,6 +98,11 @@ pub struct Aside<'a>(Vec<Context<'a>>);
 pub struct CaptureList(usize);
 
 impl<'a> Scopes<'a> {
+    /// No scope yet, but global slots that are taken.
+    pub fn with_globals(globals: Vec<(Word, Span)>) -> Self {
+        Scopes { globals, ..Scopes::default() }
+    }
+
     /// An empty list of captures, for a lambda or for the functions of a scope.
     pub fn new_captures(&mut self) -> CaptureList {
         self.captures.push(Captures::default());
@@ -149,6 +154,18 @@ impl<'a> Scopes<'a> {
         let first_slot = context.next_slot;
         context.scopes.push(Scope { id, names: HashMap::new(), items, first_slot, global });
         id
+    }
+
+    /// Opens a scope of names that have their global slots already.
+    pub fn open_known(&mut self, names: impl Iterator<Item = (&'a str, (Access, Declared, Span))>) {
+        let scope = self.open(Vec::new(), true);
+        for (name, (access, declared, span)) in names {
+            let Access::Global(slot) = access else { continue };
+            let id = VariableId(self.variables.len() as u32);
+            self.variables.push(Variable { declared, span, place: Place::Global(slot), scope });
+            let innermost = self.context().scopes.last_mut().expect("a scope was just opened");
+            innermost.names.insert(name, id);
+        }
     }
 
     /// Closes the innermost scope; its slots are free again.
@@ -283,7 +300,7 @@ impl<'a> Scopes<'a> {
 
     /// Whether this is the top level of a unit.
     pub fn at_top(&self) -> bool {
-        matches!(&self.contexts[..], [unit] if unit.scopes.len() == 1)
+        matches!(&self.contexts[..], [unit] if unit.scopes.last().is_some_and(|scope| scope.global))
     }
 
     /// Whether `return` may stand here.

@@ -249,7 +249,9 @@ impl<'a> Builder<'a> {
     fn placement(&mut self, token: Token<'a>) -> ItemKind {
         let at = token.as_span().start();
         let value = self.only_expression(token);
-        if let Some(what) = never_placed(&value.kind) {
+        if !self.origin.limits.answers
+            && let Some(what) = never_placed(&value.kind)
+        {
             let said = format!("{what} stands where an item is expected");
             let line = self.text[..at].rsplit('\n').next().unwrap_or_default().trim_end();
             let hint = if self.text[at..].starts_with('(') && line.ends_with(|c: char| c.is_alphanumeric()) {

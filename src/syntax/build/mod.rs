@@ -66,11 +66,20 @@ pub const KEYWORDS: &[&str] =
 pub struct ParseLimits {
     /// How deeply brackets, braces and operators may nest.
     pub depth: usize,
+    /// Whether an item may be any expression, also one that is never placed: in a dialogue it is answered.
+    pub answers: bool,
+}
+
+impl ParseLimits {
+    /// Those of a file.
+    pub fn nesting(depth: usize) -> Self {
+        Self { depth, answers: false }
+    }
 }
 
 impl Default for ParseLimits {
     fn default() -> Self {
-        Self { depth: 256 }
+        Self::nesting(256)
     }
 }
 

@@ -7,12 +7,16 @@ use ogee::lang::reference;
 
 /// Prints the page of a name, or the whole reference as Markdown.
 pub fn run(args: &Docs) -> Ended {
-    let text = match &args.name {
+    data(match &args.name {
         None => reference::whole(),
-        Some(name) => reference::page(name).ok_or_else(|| unknown(name))?,
-    };
-    data(format!("{}\n", text.trim_end()))?;
+        Some(name) => page(name)?,
+    })?;
     Ok(Exit::Done)
+}
+
+/// The page of a name.
+pub fn page(name: &str) -> Result<String, Failure> {
+    reference::page(name).ok_or_else(|| unknown(name))
 }
 
 fn unknown(name: &str) -> Failure {

@@ -25,7 +25,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 /// A session with the options of the command line.
-fn session(evaluation: &Evaluation) -> Session {
+pub fn session(evaluation: &Evaluation) -> Session {
     let mut options = Options { set: evaluation.set.clone(), ..Options::default() };
     options.time = evaluation.time.unwrap_or(options.time);
     for &(name, value) in &evaluation.limit {
@@ -63,7 +63,7 @@ fn read(file: &Path) -> Result<Vec<u8>, Failure> {
 }
 
 /// Tells at once where a file of the command line cannot be read: that is no fault of a scene.
-fn try_to_read(file: &Path) -> Result<(), Failure> {
+pub fn try_to_read(file: &Path) -> Result<(), Failure> {
     if file == Path::new("-") {
         return Ok(());
     }
@@ -116,7 +116,7 @@ fn parsed(file: &Path, limits: Limits) -> Result<Parsed, Failure> {
         }
     };
     let id = sources.add(name, text.as_str());
-    let limits = ParseLimits { depth: limits.nesting };
+    let limits = ParseLimits::nesting(limits.nesting);
     let (tree, found) = parse_file(id, &text, limits);
     diagnostics.extend(found);
     Ok(Parsed { sources, id, limits, tree, diagnostics })

@@ -1,0 +1,187 @@
+//! `ogee repl` through a pipe: what lines answer, and that a line that fails changes nothing.
+
+use crate::run::{Folder, Run};
+
+fn repl(lines: &str) -> Run {
+    Folder::new().ogee_fed("repl", lines)
+}
+
+/// What lines answer that all succeed.
+fn answers(lines: &str) -> String {
+    let run = repl(lines).expect(0);
+    assert!(run.stderr.is_empty(), "{}", run.stderr);
+    run.out().to_owned()
+}
+
+#[test]
+fn names_of_earlier_lines_are_known_to_later_ones() {
+    assert_eq!(answers("let r = 2\npi * r^2\n"), "12.566370614359172\n");
+    assert_eq!(answers("var n = 1\nn = n + 1\nn\n"), "2\n");
+    assert_eq!(answers("fn f(a, b = 3) = a * b\nf(2)\nf(2, b: 5)\n"), "6\n10\n");
+    assert_eq!(answers("let add = k => (x => x + k)\nlet two = add(2)\ntwo(40)\n"), "42\n");
+    assert_eq!(answers("sphere ball { radius 2 }\nball\n"), "an object\n");
+}
+
+#[test]
+fn a_name_may_be_given_again_and_what_used_the_old_one_keeps_it() {
+    assert_eq!(answers("let a = 1\nfn f() = a\nlet a = 2\n[f(), a]\n"), "[1, 2]\n");
+}
+
+#[test]
+fn every_expression_is_answered_and_nothing_else() {
+    assert_eq!(answers("let a = 5\na -3\na\n-a\n(a)\n<1, a>\n\"{a}!\"\n"), "2\n5\n-5\n5\n<1, 5>\n\"5!\"\n");
+    assert_eq!(answers("1; 2\nfor i in 0..3 { i * i }\nif true { 7 } else { 8 }\n"), "1\n2\n0\n1\n4\n7\n");
+    assert_eq!(
+        answers("material { diffuse 1 }\nmaterial clay { diffuse 1 }\n[]\n\n// nothing\n"),
+        "a material\n[]\n"
+    );
+}
+
+#[test]
+fn what_prints_says_so_to_the_person_and_is_not_answered() {
+    let run = repl("print(1, 2)\n").expect(0);
+    assert_eq!((run.out(), &*run.stderr), ("", "1 2\n"));
+}
+
+#[test]
+fn what_is_open_goes_on_in_the_next_line() {
+    let lines = "fn f(a) {\n  let b = a\n\n  return b * 2\n}\nf(\n3)\n1 +\n2\n/* no\n*/ 4\n";
+    assert_eq!(answers(lines), "6\n3\n4\n");
+}
+
+#[test]
+fn a_line_that_fails_changes_nothing() {
+    let setup = "var n = 1\nlet counter = () => n\n";
+    for failing in ["n = 2; 1 / 0", "n = 2; nope", "n = 2; (", "let n = 3; 1 / 0", "n = 2\u{1}"] {
+        let run = repl(&format!("{setup}{failing}\n\n:names\nn\n")).expect(1);
+        let expected = "counter\nn\n1\n";
+        // A bracket that stays open takes the rest of the input along.
+        assert_eq!(run.out(), if failing.ends_with('(') { "" } else { expected }, "{failing}");
+    }
+}
+
+#[test]
+fn variables_that_closures_share_are_taken_back_too() {
+    let make = "fn make() {\n  var n = 0\n  fn next() { n = n + 1  return n }\n  return next\n}\n";
+    let run = repl(&format!("{make}let next = make()\nnext()\n[next(), next(), 1 / 0]\nnext()\n")).expect(1);
+    assert_eq!(run.out(), "1\n2\n");
+}
+
+#[test]
+fn objects_of_a_line_that_fails_are_not_placed() {
+    let run = repl("sphere { }; 1 / 0\nsphere { radius 2 }\n:scene\n").expect(1);
+    assert_eq!(run.out(), "an object\nsphere  center <0, 0, 0>  radius 2  # 2:1\n");
+}
+
+#[test]
+fn faults_are_told_at_their_line_of_the_input() {
+    let run = repl("let a = 1\n\n[a,\n  b]\n").expect(1);
+    assert!(run.stderr.contains("[<repl>:4:3]") && run.stderr.contains(" 4 │   b]"), "{}", run.stderr);
+    let run = repl("fn f(x) = 1 / x\n\nf(0)\n").expect(1);
+    assert!(run.stderr.contains("[<repl>:1:11]") && run.stderr.contains("<repl>:3:1"), "{}", run.stderr);
+}
+
+#[test]
+fn the_names_of_a_file_are_in_scope() {
+    let folder = Folder::with(&[
+        ("a.scene", "let side = 3\nimport \"b.scene\" as b\nsphere { radius side }\n"),
+        ("b.scene", "fn twice(x) = 2 * x\n"),
+    ]);
+    let run = folder.ogee_fed("repl a.scene", "b.twice(side)\n:scene\n").expect(0);
+    assert_eq!(run.out(), "6\nsphere  center <0, 0, 0>  radius 3  # 3:1\n");
+    let run = folder.ogee_fed("repl a.scene --set side=4", "side\n").expect(0);
+    assert_eq!(run.out(), "4\n");
+    folder.ogee("repl --set side=4").expect(2);
+    folder.ogee("repl none.scene").expect(3);
+}
+
+#[test]
+fn files_are_imported_once_and_loaded_anew() {
+    let folder = Folder::with(&[("a.scene", "let a = 1\nsphere { radius a }\n")]);
+    let lines = "import \"a.scene\"\nimport \"a.scene\"\na\n:scene\n";
+    assert_eq!(
+        folder.ogee_fed("repl", lines).expect(0).out(),
+        "1\nsphere  center <0, 0, 0>  radius 1  # 2:1\n"
+    );
+    let run = folder.ogee_fed("repl", "import \"a.scene\" as t\nt.a\nimport \"a.scene\"\na\n").expect(0);
+    assert_eq!(run.out(), "1\n1\n");
+    let lines = ":load a.scene\nlet b = 2\n:reload\n:names\n:scene\n";
+    let run = folder.ogee_fed("repl", lines).expect(0);
+    assert_eq!(run.out(), "a\nsphere  center <0, 0, 0>  radius 1  # 2:1\n");
+}
+
+#[test]
+fn a_file_that_fails_to_load_changes_nothing() {
+    let folder = Folder::with(&[("bad.scene", "let a = 1\nsphere { }\nlet b = 1 / 0\n")]);
+    let run = folder
+        .ogee_fed("repl bad.scene", ":load bad.scene\nimport \"bad.scene\"\n:names\n:scene\n")
+        .expect(1);
+    assert_eq!(run.out(), "");
+    assert_eq!(run.stderr.matches("bad.scene:3:9").count(), 3, "{}", run.stderr);
+}
+
+#[test]
+fn orders_tell_what_they_are_asked() {
+    let lines = "fn f(a, b = 2) = a\n:type f\n:type sqrt\n:type [1, 2]\n:type <1, 2>\n:type 1 +\n";
+    let run = repl(lines).expect(1);
+    assert_eq!(
+        run.out(),
+        "a function of (a, b = …)\nthe function sqrt(x)\na list of 2 numbers\na 2-vector\n"
+    );
+    let page = Folder::new().ogee("docs sphere").expect(0);
+    assert_eq!(repl(":help sphere\n").expect(0).stdout, page.stdout);
+    assert!(repl(":help\n").expect(0).out().contains(":reload "));
+    assert!(repl("var n = 1\n:type n\n:time n + 1\n").expect(0).out() == "a number\n2\n");
+}
+
+#[test]
+fn slips_are_answered_with_the_nearest() {
+    for (line, told) in [
+        (":relaod", "did you mean `:reload`?"),
+        (":help sphre", "did you mean `sphere`?"),
+        (":xyzzy", "`:help` lists the orders"),
+        (":load", "write `:load FILE`"),
+        (":quit now", "`:quit` stands alone"),
+        ("exit", "`:quit`"),
+    ] {
+        let run = repl(&format!("{line}\n")).expect(1);
+        assert!(run.stderr.contains(told), "{line}: {}", run.stderr);
+    }
+    assert_eq!(repl(":quit\n1\n").expect(0).out(), "");
+}
+
+/// A block of a page that begins with `$ ogee repl`: numbered prompts with what follows each, as a terminal shows it.
+fn transcripts(page: &str) -> Vec<(String, String)> {
+    let blocks = page.split("```console\n$ ogee repl\n").skip(1);
+    let block = |text: &str| {
+        let (mut typed, mut shown, mut open) = (String::new(), String::new(), false);
+        for line in text.split("```").next().unwrap_or_default().lines() {
+            let after_prompt = line.split_once("> ").filter(|(n, _)| n.parse::<usize>().is_ok());
+            let to = match after_prompt {
+                None if !open => &mut shown,
+                _ => &mut typed,
+            };
+            let first = to.len();
+            to.push_str(after_prompt.map_or(line, |(_, line)| line));
+            to.push('\n');
+            if after_prompt.is_some() || open {
+                let start = if open { 0 } else { first };
+                open = ogee::syntax::unfinished::is_unfinished(typed[start..].trim_end());
+            }
+        }
+        (typed, shown)
+    };
+    blocks.map(block).collect()
+}
+
+#[test]
+fn the_transcripts_of_the_page_are_what_happens() {
+    let found = transcripts(include_str!("../../docs/repl.md"));
+    assert!(!found.is_empty());
+    let folder = Folder::new();
+    for (typed, shown) in found {
+        std::fs::write(folder.path().join("lines"), &typed).unwrap();
+        let run = folder.sh("$OGEE repl < lines 2>&1");
+        assert_eq!(run.out(), shown, "{typed}");
+    }
+}
