@@ -1,4 +1,4 @@
-//! Real roots of polynomials of degree four or less.
+//! Real roots of polynomials: of degree four or less for rays, of any small degree for scenes.
 //!
 //! The roots of the derivative cut the line into intervals on which the polynomial is monotone; in each, a sign change is closed
 //! in on by Newton's steps inside a bracket (Yuksel, *High-performance polynomial root finding for graphics*, 2022). Signs are
@@ -10,14 +10,20 @@
 use super::error::{UNIT_ROUNDOFF, gamma};
 use super::exact::{Double, exponent, scale_by};
 
-/// Real roots in ascending order.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Roots {
-    values: [f64; 4],
+/// Real roots in ascending order; room for N.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Roots<const N: usize = 5> {
+    values: [f64; N],
     count: usize,
 }
 
-impl Roots {
+impl<const N: usize> Default for Roots<N> {
+    fn default() -> Self {
+        Roots { values: [0.0; N], count: 0 }
+    }
+}
+
+impl<const N: usize> Roots<N> {
     fn push(&mut self, x: f64) {
         if self.count < self.values.len() && !self.contains(&x) {
             self.values[self.count] = x;
@@ -25,13 +31,13 @@ impl Roots {
         }
     }
 
-    fn sorted(mut self) -> Roots {
+    fn sorted(mut self) -> Self {
         self.values[..self.count].sort_by(f64::total_cmp);
         self
     }
 }
 
-impl std::ops::Deref for Roots {
+impl<const N: usize> std::ops::Deref for Roots<N> {
     type Target = [f64];
 
     fn deref(&self) -> &[f64] {
@@ -60,9 +66,18 @@ pub fn roots_of(coefficients: &[f64]) -> Roots {
     roots_between(coefficients, f64::NEG_INFINITY, f64::INFINITY)
 }
 
+/// The same for at most N coefficients.
+pub fn roots_of_up_to<const N: usize>(coefficients: &[f64]) -> Roots<N> {
+    between(coefficients, f64::NEG_INFINITY, f64::INFINITY)
+}
+
 /// The roots in [low, high].
 pub fn roots_between(coefficients: &[f64], low: f64, high: f64) -> Roots {
-    let finite = coefficients.iter().all(|c| c.is_finite()) && coefficients.len() <= 5;
+    between(coefficients, low, high)
+}
+
+fn between<const N: usize>(coefficients: &[f64], low: f64, high: f64) -> Roots<N> {
+    let finite = coefficients.iter().all(|c| c.is_finite()) && coefficients.len() <= N;
     let degree = coefficients.iter().rposition(|c| *c != 0.0);
     let (Some(degree), true) = (degree, finite) else { return Roots::default() };
     let zeros = coefficients.iter().take_while(|c| **c == 0.0).count();
@@ -70,7 +85,7 @@ pub fn roots_between(coefficients: &[f64], low: f64, high: f64) -> Roots {
     if zeros > 0 && low <= 0.0 && high >= 0.0 {
         roots.push(0.0);
     }
-    let rest = Polynomial::balanced(&coefficients[zeros..=degree]);
+    let rest = Polynomial::<N>::balanced(&coefficients[zeros..=degree]);
     let inward = |x: f64| scale_by(x, -rest.shift);
     for &x in &*rest.roots_between(inward(low), inward(high)) {
         roots.push(scale_by(x, rest.shift));
@@ -79,15 +94,15 @@ pub fn roots_between(coefficients: &[f64], low: f64, high: f64) -> Roots {
 }
 
 /// Σ cᵢyⁱ with first and last coefficient of like size, both not 0.
-struct Polynomial {
-    coefficients: [f64; 5],
+struct Polynomial<const N: usize> {
+    coefficients: [f64; N],
     degree: usize,
     /// x = y·2^shift.
     shift: i32,
 }
 
-impl Polynomial {
-    fn balanced(given: &[f64]) -> Polynomial {
+impl<const N: usize> Polynomial<N> {
+    fn balanced(given: &[f64]) -> Self {
         let degree = given.len() - 1;
         let shift = if degree == 0 {
             0
@@ -96,16 +111,16 @@ impl Polynomial {
         };
         let size = |i: usize| exponent(given[i]) + shift * i as i32;
         let largest = (0..=degree).filter(|&i| given[i] != 0.0).map(size).max().unwrap_or(0);
-        let mut coefficients = [0.0; 5];
+        let mut coefficients = [0.0; N];
         for (i, &c) in given.iter().enumerate() {
             coefficients[i] = scale_by(c, shift * i as i32 - largest);
         }
         Polynomial { coefficients, degree, shift }
     }
 
-    fn roots_between(&self, low: f64, high: f64) -> Roots {
+    fn roots_between(&self, low: f64, high: f64) -> Roots<N> {
         let c = &self.coefficients;
-        let inside = |roots: Roots| {
+        let inside = |roots: Roots<N>| {
             let mut kept = Roots::default();
             roots.iter().filter(|x| (low..=high).contains(*x)).for_each(|&x| kept.push(x));
             kept
@@ -122,8 +137,8 @@ impl Polynomial {
         }
     }
 
-    fn quadratic(&self) -> Roots {
-        let [c, b, a, ..] = self.coefficients;
+    fn quadratic(&self) -> Roots<N> {
+        let (c, b, a) = (self.coefficients[0], self.coefficients[1], self.coefficients[2]);
         let discriminant = (Double::product(b, b) - Double::product(4.0 * a, c)).value();
         let mut roots = Roots::default();
         if discriminant >= 0.0 {
@@ -136,18 +151,18 @@ impl Polynomial {
     }
 
     /// Cuts the interval at the derivative's roots and looks for a root between each two neighbours.
-    fn by_intervals(&self, low: f64, high: f64) -> Roots {
+    fn by_intervals(&self, low: f64, high: f64) -> Roots<N> {
         let reach = self.reach();
         let (low, high) = (low.max(-reach), high.min(reach));
         let mut roots = Roots::default();
         if !(low <= high) {
             return roots;
         }
-        let mut derivative = [0.0; 4];
+        let mut derivative = [0.0; N];
         for i in 1..=self.degree {
             derivative[i - 1] = i as f64 * self.coefficients[i];
         }
-        let turns = roots_between(&derivative[..self.degree], low, high);
+        let turns: Roots<N> = between(&derivative[..self.degree], low, high);
         let mut left = End::at(self, low);
         if left.sign == 0 {
             roots.push(left.x);
@@ -185,7 +200,7 @@ impl Polynomial {
     }
 
     /// Coefficients and variable at a scale where powers of the variable cannot overflow.
-    fn at_safe_scale(&self, x: f64) -> ([f64; 5], f64) {
+    fn at_safe_scale(&self, x: f64) -> ([f64; N], f64) {
         let e = exponent(x);
         if e.abs() < 100 {
             return (self.coefficients, x);
@@ -257,7 +272,7 @@ struct End {
 }
 
 impl End {
-    fn at(p: &Polynomial, x: f64) -> End {
+    fn at<const N: usize>(p: &Polynomial<N>, x: f64) -> End {
         End { x, sign: p.sign(x) }
     }
 }
@@ -391,6 +406,27 @@ mod tests {
         const S: f64 = 1e30;
         let last = quartic(1.0, -(1.0 + 1.0 / S), 1.0 / S - S * S, S * S + S, -S);
         assert!(error(last, &[-S, 1e-30, 1.0, S]) <= 4e-16, "{last:?}");
+    }
+
+    #[test]
+    fn polynomials_of_higher_degree_have_all_their_real_roots() {
+        // (x − 1)(x − 2)…(x − 9), and x⁶ − 1, and the quintic x⁵ − x − 1 that no radicals solve.
+        let mut product = vec![1.0];
+        for root in 1..10 {
+            let mut next = vec![0.0; product.len() + 1];
+            for (i, c) in product.iter().enumerate() {
+                next[i] -= f64::from(root) * c;
+                next[i + 1] += c;
+            }
+            product = next;
+        }
+        let found = roots_of_up_to::<16>(&product);
+        assert_eq!(found.len(), 9, "{found:?}");
+        assert!(found.iter().zip(1..).all(|(x, n)| (x - f64::from(n)).abs() < 1e-10), "{found:?}");
+        assert_eq!(roots_of_up_to::<8>(&[-1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0]).to_vec(), [-1.0, 1.0]);
+        let quintic = roots_of_up_to::<8>(&[-1.0, -1.0, 0.0, 0.0, 0.0, 1.0]);
+        assert!(quintic.len() == 1 && (quintic[0] - 1.167_303_978_261_418_7).abs() < 1e-15, "{quintic:?}");
+        assert!(roots_of_up_to::<4>(&[1.0; 5]).is_empty(), "more coefficients than there is room for");
     }
 
     #[test]
