@@ -15,6 +15,7 @@ CASES = [
     ("trivial", 320, 240, [], [], 20, "render"),
     ("loop", 16, 16, [], [], 20, "check"),
     ("calls", 16, 16, [], [], 15, "check"),
+    ("curve", 16, 16, [], [], 30, "check"),
     ("spheres", 640, 480, ["Declare=N=1000000"], ["--set", "n=1000000"], 5, "render"),
     ("flat", 640, 480, [], [], 1 / 1.5, "render"),
     ("flake", 800, 600, ["Declare=D=5"], ["--set", "levels=5"], 3, "render"),

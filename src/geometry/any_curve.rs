@@ -26,6 +26,8 @@ macro_rules! each_curve {
         }
     };
 }
+pub(crate) use each_curve;
+
 macro_rules! from_measured {
     ($($point:ty => $variant:ident),*) => {
         $(impl<T: Into<Measured<$point>>> IntoCurve<$point> for T {

@@ -4,10 +4,11 @@
 //! frames are those of the polynomials, so that they cost no evaluations of the function and have a known error. Trefethen,
 //! *Approximation Theory and Approximation Practice*. Intervals where halving does not help end at kinks and jumps, which become cuts.
 
-use super::curve::Side;
+use super::curve::{CurveError, Side};
 use super::path::Path;
-use crate::math::Point;
-use crate::math::elementary::cos;
+use crate::math::elementary::sin_cos_degrees;
+use crate::math::{Point, bracket};
+use std::convert::Infallible;
 
 /// Coefficients on one interval: degree 15.
 const TERMS: usize = 16;
@@ -76,13 +77,50 @@ impl<P: Point> FunctionPath<P> {
             for i in 1..TERMS {
                 let dip = sampled[i] < sampled[i - 1] && sampled[i] <= sampled[i + 1];
                 if dip && sampled[i] < 0.25 * fastest {
-                    cuts.push(crate::math::bracket::minimum(at(i - 1), at(i + 1), speed));
+                    cuts.push(bracket::minimum(at(i - 1), at(i + 1), speed));
                 }
             }
             cuts.push(panel.end);
         }
         cuts.dedup_by(|a, b| *a <= *b);
         cuts
+    }
+}
+
+impl<P: Point> FunctionPath<P> {
+    /// Lower and upper corner of the box around it, inner extremes widened by [`FunctionPath::error`]; an extreme narrower than a
+    /// sixteenth of an interval may be missed.
+    pub fn bounds(&self) -> (P, P) {
+        let per_axis = |axis: usize| {
+            let each = self.panels.iter().map(|panel| panel.extremes(axis));
+            let (low, high) = each.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1))).unwrap_or((0.0, 0.0));
+            (low - self.error, high + self.error)
+        };
+        (P::from_coordinates(|axis| per_axis(axis).0), P::from_coordinates(|axis| per_axis(axis).1))
+    }
+
+    /// The parts before and after t in the domain. Errors: t is an end.
+    pub fn split(&self, t: f64) -> Result<(Self, Self), CurveError> {
+        let (start, end) = self.domain();
+        if t <= start || t >= end {
+            return Err(CurveError::SplitAtEnd { t });
+        }
+        Ok((self.refitted(start, t, |x| x), self.refitted(t, end, |x| x)))
+    }
+
+    /// The same way backwards, over the same domain: its value at t is that at start + end − t.
+    #[must_use]
+    pub fn reverse(&self) -> Self {
+        let (start, end) = self.domain();
+        self.refitted(start, end, |t| (start + (end - t)).clamp(start, end))
+    }
+
+    /// The path after a change of parameter.
+    fn refitted(&self, start: f64, end: f64, inner: impl Fn(f64) -> f64) -> Self {
+        let fit = FunctionPath::fit(start, end, |t| Ok::<P, Infallible>(self.position(inner(t))));
+        let mut path = fit.unwrap_or_else(|never| match never {});
+        path.error += self.error;
+        path
     }
 }
 
@@ -121,9 +159,15 @@ impl<P: Point> Fit<P> {
     }
 }
 
+/// cos(πn / 2N), the angle reduced and in degrees, where it is exact.
+fn cosine(n: usize) -> f64 {
+    let degrees = 90.0 / TERMS as f64;
+    sin_cos_degrees(degrees * (n % (4 * TERMS)) as f64).1
+}
+
 /// Chebyshev points of the first kind, ascending.
 fn node(k: usize) -> f64 {
-    -cos(std::f64::consts::PI * (k as f64 + 0.5) / TERMS as f64)
+    -cosine(2 * k + 1)
 }
 
 /// Coefficients of the polynomial with these values at the nodes.
@@ -131,8 +175,7 @@ fn transform<P: Point>(values: &[P; TERMS]) -> [P; TERMS] {
     std::array::from_fn(|j| {
         let sum = values.iter().enumerate().fold(P::zero(), |sum, (k, value)| {
             // Tⱼ at node k, whose angle is π − π(k + ½)/n.
-            let turn = std::f64::consts::PI * (TERMS as f64 - 0.5 - k as f64) / TERMS as f64;
-            sum + *value * cos(j as f64 * turn)
+            sum + *value * cosine(j * (2 * TERMS - 1 - 2 * k))
         });
         sum * (if j == 0 { 1.0 } else { 2.0 } / TERMS as f64)
     })
@@ -145,6 +188,24 @@ impl<P: Point> Panel<P> {
         let second = derivative(&first, scale);
         let third = derivative(&second, scale);
         Panel { start, end, coefficients, derivatives: [first, second, third] }
+    }
+
+    /// Least and greatest value of one coordinate, by sampling and closing in.
+    fn extremes(&self, axis: usize) -> (f64, f64) {
+        let at = |i: usize| self.start + (self.end - self.start) * (i as f64 / TERMS as f64);
+        let value = |t: f64| self.sum(&self.coefficients, t).coordinate(axis);
+        let sampled: Vec<f64> = (0..=TERMS).map(|i| value(at(i))).collect();
+        let extreme = |sign: f64| {
+            let (best, _) = sampled
+                .iter()
+                .enumerate()
+                .min_by(|a, b| (sign * a.1).total_cmp(&(sign * b.1)))
+                .unwrap_or((0, &0.0));
+            let t =
+                bracket::minimum(at(best.saturating_sub(1)), at((best + 1).min(TERMS)), |t| sign * value(t));
+            sign * (sign * sampled[best]).min(sign * value(t))
+        };
+        (extreme(1.0), extreme(-1.0))
     }
 
     /// Clenshaw's sum.
@@ -211,7 +272,6 @@ mod tests {
     use crate::geometry::arc_length::ArcLength;
     use crate::math::elementary::{exp, sin, sin_cos};
     use glam::{DVec2, DVec3};
-    use std::convert::Infallible;
 
     fn fit<P: Point>(a: f64, b: f64, f: impl Fn(f64) -> P) -> FunctionPath<P> {
         FunctionPath::fit(a, b, |t| Ok::<P, Infallible>(f(t))).unwrap_or_else(|e| match e {})
@@ -261,6 +321,21 @@ mod tests {
         })
         .unwrap_or_else(|e| match e {});
         assert!(n < 200_000 && path.error() > 1e-3, "{n} {}", path.error());
+    }
+
+    #[test]
+    fn parts_and_boxes_are_those_of_the_function() {
+        let path = fit(0.0, 6.0, |t| DVec2::new(t, sin(t)));
+        let (low, high) = path.bounds();
+        assert!(
+            (low - DVec2::new(0.0, -1.0)).length() < 1e-13 && (high - DVec2::new(6.0, 1.0)).length() < 1e-13
+        );
+        let (before, after) = path.split(2.5).unwrap();
+        assert_eq!((before.domain(), after.domain()), ((0.0, 2.5), (2.5, 6.0)));
+        assert!(before.position(1.25).distance(path.position(1.25)) < 1e-14);
+        assert!(after.position(5.5).distance(path.position(5.5)) < 1e-14);
+        assert!(path.reverse().position(1.0).distance(path.position(5.0)) < 1e-14);
+        assert!(path.split(6.0).is_err());
     }
 
     #[test]

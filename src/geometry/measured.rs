@@ -2,7 +2,7 @@
 
 use super::arc_length::ArcLength;
 use super::closest::{Nearest, closest_sampled};
-use super::curve::{Curve, CurveError, Side, on_domain};
+use super::curve::{Curve, CurveError, Side, curvature_of, normal_of, on_domain, torsion_of};
 use super::frame::{Frame, Frames};
 use super::function::FunctionPath;
 use super::path::Path;
@@ -116,6 +116,50 @@ impl<P: Point> Measured<P> {
         if t == self.path().domain().1 { Side::Before } else { Side::After }
     }
 
+    /// Unit tangent: at seams and cusps that of the curve ahead, at the end that of the curve behind; zero for a point. Errors: outside
+    /// the domain.
+    pub fn tangent(&self, t: f64) -> Result<P, CurveError> {
+        let t = self.parameter(t)?;
+        Ok(self.path().direction(t, self.side(t)))
+    }
+
+    /// Principal normal: the unit vector towards the centre of curvature; on a straight stretch some fixed unit vector across. Errors:
+    /// outside the domain.
+    pub fn normal(&self, t: f64) -> Result<P, CurveError> {
+        Ok(normal_of(&self.derivatives(t)?, self.tangent(t)?))
+    }
+
+    /// Curvature, per scene unit; 0 where the path stands still. Errors: outside the domain.
+    pub fn curvature(&self, t: f64) -> Result<f64, CurveError> {
+        let t = self.parameter(t)?;
+        Ok(curvature_of(&self.derivatives(t)?, self.path().still(t)))
+    }
+
+    /// Lower and upper corner of the box around it.
+    pub fn bounds(&self) -> (P, P) {
+        match &self.made {
+            Made::Spline(curve) => curve.bounds(),
+            Made::Function(path) => path.bounds(),
+        }
+    }
+
+    /// The parts before and after t, each over its part of the parameter. Errors: outside the domain, or at an end of it.
+    pub fn split(&self, t: f64) -> Result<(Self, Self), CurveError> {
+        match &self.made {
+            Made::Spline(curve) => curve.split(t).map(|(a, b)| (a.into(), b.into())),
+            Made::Function(path) => path.split(self.parameter(t)?).map(|(a, b)| (a.into(), b.into())),
+        }
+    }
+
+    /// The same way backwards, over the same domain.
+    #[must_use]
+    pub fn reverse(&self) -> Self {
+        match &self.made {
+            Made::Spline(curve) => curve.reverse().into(),
+            Made::Function(path) => path.reverse().into(),
+        }
+    }
+
     /// The point nearest to p; of several, the one with the least parameter.
     pub fn closest(&self, p: P) -> Nearest<P> {
         match &self.made {
@@ -130,6 +174,16 @@ impl Measured<DVec3> {
     pub fn frame(&self, t: f64, up: DVec3) -> Result<Frame, CurveError> {
         let t = self.parameter(t)?;
         Ok(self.frames().at(self.path(), t, up))
+    }
+
+    /// Tangent × principal normal. Errors: outside the domain.
+    pub fn binormal(&self, t: f64) -> Result<DVec3, CurveError> {
+        Ok(self.tangent(t)?.cross(self.normal(t)?))
+    }
+
+    /// Torsion, per scene unit; 0 where the curvature vanishes. Errors: outside the domain.
+    pub fn torsion(&self, t: f64) -> Result<f64, CurveError> {
+        Ok(torsion_of(&self.derivatives(t)?))
     }
 
     /// Its frames.

@@ -49,7 +49,10 @@ pub fn fits(ctx: &dyn Context, kind: Type, value: &Value) -> bool {
         Type::Transform => matches!(value, Value::Transform(_)),
         Type::Point => matches!(value, Value::Number(_) | Value::Vector2(_) | Value::Vector3(_)),
         Type::Curve(of) => matches!(value, Value::Curve(curve) if of.holds(curve.dimension())),
-        Type::Function => matches!(value, Value::Function(_) | Value::Builtin(_)),
+        Type::Function => {
+            matches!(value, Value::Function(_) | Value::Builtin(_))
+                || super::members::call_of(value).is_some()
+        }
         Type::List => matches!(value, Value::List(_) | Value::Range(_)),
         Type::Any | Type::Unbuilt => true,
     }
@@ -258,6 +261,7 @@ pub fn shown(value: &Value) -> String {
         Value::Camera(_) => "a camera".into(),
         Value::Render(_) => "a render block".into(),
         Value::Curve(curve) => a_curve_of(curve.dimension()).into(),
+        Value::Record(record) => record.name.into(),
         Value::Transform(_) => "a transform".into(),
         Value::Fragment(_) => "a group of properties".into(),
         Value::Word(word) => format!("the word `{word}`"),

@@ -1,7 +1,7 @@
 //! Values as text: numbers in the shortest form that reads back the same, vectors `<a, b>`, lists `[a, b]`.
 //! Shared by `ogee eval`, interpolation, `print` and messages.
 
-use super::value::Value;
+use super::value::{Record, Value};
 
 /// How a value is written.
 #[derive(Clone, Copy, Debug, Default)]
@@ -77,6 +77,7 @@ fn write(out: &mut String, value: &Value, style: Style, depth: usize) {
                 out.push_str(&format!(" step {}", shown(range.step)));
             }
         }
+        Value::Record(record) => write_record(out, record, style, depth),
         Value::Word(word) => out.push_str(word),
         Value::Builtin(builtin) => out.push_str(&format!("function {}", builtin.name)),
         Value::Function(_)
@@ -110,6 +111,17 @@ fn write_text(out: &mut String, text: &str, most: Option<usize>) {
         }
     }
     out.push('"');
+}
+
+fn write_record(out: &mut String, record: &Record, style: Style, depth: usize) {
+    out.push('{');
+    for (i, (name, part)) in record.parts.iter().enumerate() {
+        out.push_str(if i > 0 { ", " } else { "" });
+        out.push_str(name);
+        out.push_str(": ");
+        write(out, part, style, depth + 1);
+    }
+    out.push('}');
 }
 
 fn write_list(out: &mut String, list: &[Value], style: Style, depth: usize) {

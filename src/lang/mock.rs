@@ -64,6 +64,8 @@ impl Context for Mock {
         Ok(())
     }
 
+    fn estimated(&mut self, _: f64) {}
+
     fn time(&self) -> (f64, f64) {
         (0.0, 0.0)
     }

@@ -13,6 +13,7 @@ pub mod display;
 pub mod eval;
 pub mod kinds;
 pub mod limits;
+pub mod members;
 #[cfg(test)]
 mod mock;
 mod range;

@@ -4,6 +4,7 @@
 use super::builtins::{self, CHAPTERS, CONSTANTS};
 use super::coerce::{forms, listed};
 use super::kinds::{self, common};
+use super::members::{FAMILIES, Family, Member};
 use super::table::{Builtin, Kind, Property, Role};
 use std::fmt::Write;
 
@@ -37,7 +38,13 @@ fn kinds_of_chapter(chapter: &str) -> Vec<&'static Kind> {
     }
 }
 
-/// Every name that has a page: kinds, functions, constants, chapters, and the properties that all objects take.
+/// Which types of value have their members told at the end of which chapter.
+fn families_of_chapter(chapter: &str) -> impl Iterator<Item = &'static Family> {
+    let named = if chapter == "curves" { &["curve", "transform"][..] } else { &[] };
+    FAMILIES.iter().copied().filter(move |family| named.contains(&family.name))
+}
+
+/// Every name that has a page: kinds, functions, constants, chapters, members, and the properties that all objects take.
 pub fn names() -> impl Iterator<Item = &'static str> {
     let properties = common::of_role(Role::Object).map(|p| p.name);
     kinds::ALL
@@ -46,6 +53,7 @@ pub fn names() -> impl Iterator<Item = &'static str> {
         .chain(builtins::names())
         .chain(properties)
         .chain(PROSE.iter().map(|(name, _, _)| *name))
+        .chain(FAMILIES.iter().flat_map(|f| f.members.iter()).map(|m| m.name).filter(|name| !name.is_empty()))
 }
 
 /// The page of a kind, function, constant, property or chapter. Where a name is several of them, all are on it.
@@ -70,6 +78,14 @@ pub fn page(name: &str) -> Option<String> {
     if kinds::find(name).is_none() {
         property_page(&mut out, name);
     }
+    for family in FAMILIES {
+        if family.name == name {
+            family_page(&mut out, family, 1);
+        }
+        for member in family.members.iter().filter(|m| m.name == name) {
+            member_page(&mut out, family, member);
+        }
+    }
     (!out.is_empty()).then(|| out.trim_end().to_string() + "\n")
 }
 
@@ -91,6 +107,9 @@ pub fn whole() -> String {
         let _ = writeln!(out, "## {title}\n\n{}", prose(name));
         for kind in kinds_of_chapter(name) {
             kind_page(&mut out, kind, 3);
+        }
+        for family in families_of_chapter(name) {
+            family_page(&mut out, family, 3);
         }
         if *name == "patterns" {
             functions_chapters(&mut out);
@@ -235,6 +254,27 @@ fn builtin_page(out: &mut String, builtin: &Builtin, level: usize) {
             let _ = writeln!(out, "\n`{written}` is `{gives}`\n");
         }
     }
+}
+
+fn family_page(out: &mut String, family: &Family, level: usize) {
+    let _ = writeln!(out, "{} Members of a {}\n\n{}\n", "#".repeat(level), family.name, family.doc);
+    let _ = writeln!(out, "```ogee\n{}\n```\n", family.scene);
+    out.push_str("| written | gives | example |\n|---|---|---|\n");
+    for member in family.members {
+        let (written, gives) = member.example;
+        let _ = writeln!(out, "| `{}` | {} | `{written}` is `{gives}` |", member.written(), member.doc);
+    }
+    out.push('\n');
+}
+
+fn member_page(out: &mut String, family: &Family, member: &Member) {
+    let _ = writeln!(out, "# `{}` of a {}\n\n{}\n", member.written(), family.name, member.doc);
+    for p in member.parameters {
+        let default = p.default.map_or(String::new(), |d| format!("; by default `{d}`"));
+        let _ = writeln!(out, "- `{}`: {}{default}", p.name, p.takes);
+    }
+    let (written, gives) = member.example;
+    let _ = writeln!(out, "\nWith\n\n```ogee\n{}\n```\n\n`{written}` is `{gives}`\n", family.scene);
 }
 
 fn upper_first(text: &str) -> String {

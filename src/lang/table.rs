@@ -48,6 +48,8 @@ pub trait Context {
     ) -> Outcome<Arc<SampledFunction>>;
     /// Counts `elements` list elements (or bytes / 32) that are about to be made against the guards.
     fn reserve(&mut self, elements: usize, at: Span) -> Outcome<()>;
+    /// Says by how much the number that is about to be given may be off, where that is more than rounding.
+    fn estimated(&mut self, error: f64);
     /// `time` and `frame` of this evaluation.
     fn time(&self) -> (f64, f64);
 }

@@ -46,6 +46,8 @@ pub enum Value {
     Render(Arc<RenderSettings>),
     /// A curve.
     Curve(AnyCurve),
+    /// Named parts: what a question about a shape gives.
+    Record(Rc<Record>),
     /// An affine map.
     Transform(Rc<Affine>),
     /// Properties without a block: what a function of properties gives.
@@ -165,6 +167,22 @@ impl Value {
     /// A text.
     pub fn text(text: &str) -> Value {
         Value::Text(text.into())
+    }
+}
+
+/// Named parts, read by `value.name`.
+#[derive(Clone, Debug)]
+pub struct Record {
+    /// What it is, with its article: "a place on a curve".
+    pub name: &'static str,
+    /// The parts in order: numbers, vectors, truth values.
+    pub parts: Vec<(&'static str, Value)>,
+}
+
+impl Record {
+    /// The part of this name.
+    pub fn part(&self, name: &str) -> Option<&Value> {
+        self.parts.iter().find(|(n, _)| *n == name).map(|(_, value)| value)
     }
 }
 

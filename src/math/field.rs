@@ -13,6 +13,12 @@ pub use run::SMALL;
 
 use std::sync::Arc;
 
+/// A function with data of its own that tapes hold: a curve.
+pub trait Held: std::fmt::Debug + Send + Sync {
+    /// Reads all of `from`, fills all of `to`; false where it is undefined there.
+    fn call(&self, from: &[f64], to: &mut [f64]) -> bool;
+}
+
 /// A register of a tape.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Register(pub u16);
@@ -107,6 +113,19 @@ pub enum Op {
         /// How many results.
         n_to: u8,
     },
+    /// The `n_to` registers from `to` ← the tape's held function of this number, of the `n_from` registers from `from`.
+    CallHeld {
+        /// Which.
+        held: u16,
+        /// First of the arguments.
+        from: Register,
+        /// How many arguments.
+        n_from: u8,
+        /// First of the results.
+        to: Register,
+        /// How many results.
+        n_to: u8,
+    },
     /// to ← table\[index\], as (to, index, table). A negative index counts from the end; outside, or not whole, is a fault.
     Table(Register, Register, u16),
     /// to ← the register `index` places after `first`, of `count`; index as in a table.
@@ -179,6 +198,7 @@ pub struct Field {
     /// What registers hold at the start; inputs come first, constants are set, the rest is 0.
     initial: Arc<[f64]>,
     tables: Arc<[Box<[f64]>]>,
+    held: Arc<[Arc<dyn Held>]>,
     outputs: Arc<[Register]>,
     turn_limit: u32,
 }
@@ -191,6 +211,7 @@ impl Default for Field {
             sites: Arc::new([]),
             initial: Arc::new([]),
             tables: Arc::new([]),
+            held: Arc::new([]),
             outputs: Arc::new([]),
             turn_limit: 0,
         }

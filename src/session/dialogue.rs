@@ -28,6 +28,8 @@ pub enum Said {
     Printed(String),
     /// The value of an expression.
     Answer(Answer),
+    /// What the number answered last may be off by.
+    Within(f64),
 }
 
 /// What becomes of a line.
@@ -56,7 +58,7 @@ impl Reply {
     pub fn answer(&self) -> Option<&Answer> {
         self.said.iter().rev().find_map(|said| match said {
             Said::Answer(answer) => Some(answer),
-            Said::Printed(_) => None,
+            Said::Printed(_) | Said::Within(_) => None,
         })
     }
 }
@@ -269,6 +271,7 @@ impl Said {
         match said {
             eval::Said::Printed(text) => Said::Printed(text.clone()),
             eval::Said::Answer(value) => Said::Answer(Answer::of(value)),
+            eval::Said::Within(error) => Said::Within(*error),
         }
     }
 }

@@ -418,6 +418,26 @@ const FUNCTIONS: &[(&str, &str)] = &[
     ),
     ("fn f(p) { let scale = 2  fn inner(t) = t * scale + p.y  return inner(p.x) }", "f"),
     ("let made = [c => q => q.x * c, c => q => q.y + c]", "made[1](0.5)"),
+    (
+        "spline s { natural red, green, blue, white  closed }",
+        "p => s(mod(p.x, 1)) + s(0.5) * s.piece(1).domain[0]",
+    ),
+    (
+        "spline s { natural x, y, z, x + y }",
+        "p => s.velocity(abs(sin(p.x))) + s.tangent(0.3) * s.curvature(clamp(p.y)) + s.binormal(0.4)",
+    ),
+    (
+        "spline s { bspline <0, 0>, <1, 2>, <2, -1>, <3, 0> }",
+        "p => s.closest(p.xy).distance + s.closest(p.xy).point.x",
+    ),
+    (
+        "let s = curve(t => <sin(3 * t), t>, -2, 2)",
+        "p => s(clamp(p.x, -2, 2)).x + s.at_length(abs(p.y)).y + s.parameter_at(1) + s.length",
+    ),
+    (
+        "spline s { bezier 1, 4, 2, 3 }\nfn f(t, c = s) = c(t)",
+        "p => f(abs(sin(p.x))) + s.reverse(clamp(p.y))",
+    ),
 ];
 
 #[test]
@@ -453,6 +473,28 @@ fn a_fault_of_a_tape_names_its_expression() {
     let tape = compiled("", "p => p.x > 0 ? sqrt(-1) : 2");
     assert!(tape.field.eval(&[1.0, 0.0, 0.0], &mut [0.0]).is_err());
     assert!(tape.field.eval(&[-1.0, 0.0, 0.0], &mut [0.0]).is_ok(), "an undefined branch that is not taken");
+}
+
+#[test]
+fn a_curve_outside_its_domain_is_undefined_at_that_sample() {
+    for function in ["p => s(p.x)", "p => s.at_length(100 * p.x)", "p => p.y > 0 ? s(0.5) : s(2)"] {
+        let tape = compiled("spline s { bezier x, y, z, white }", function);
+        let mut out = [0.0; 3];
+        assert!(tape.field.eval(&[0.01, 1.0, 0.0], &mut out).is_ok(), "{function}");
+        let fault = tape.field.eval(&[1.5, -1.0, 0.0], &mut out).expect_err("outside");
+        assert!(tape.place(fault).end > tape.place(fault).start);
+    }
+    let wrong = [
+        ("p => s(p)", "E0201"),
+        ("p => s(u: p.x)", "E0202"),
+        ("p => s.wiggle(p.x)", "E0204"),
+        ("p => s.to(p.x)", "E0410"),
+    ];
+    for (function, code) in wrong {
+        let text =
+            format!("spline s {{ bezier x, y, z, white }}\nsphere {{ material {{ diffuse {function} }} }}");
+        assert_eq!(codes(&evaluate(&text).diagnostics), [code], "{function}");
+    }
 }
 
 #[test]

@@ -2,7 +2,7 @@
 //! tables say. `OGEE_BLESS=1` writes the page anew.
 
 use ogee::diag::{Diagnostic, Severity};
-use ogee::lang::{builtins, kinds, reference};
+use ogee::lang::{builtins, kinds, members, reference};
 use ogee::scene::assets::Loader;
 use ogee::session::{Options, Session};
 use std::path::Path;
@@ -68,6 +68,32 @@ fn every_example_of_a_function_gives_what_it_says() {
         }
         let found = answer.map(|a| a.text(None));
         assert_eq!(found.as_deref(), Some(gives), "{written}: {diagnostics:#?}");
+    }
+}
+
+/// One scene, under any name.
+struct OneScene(&'static str);
+
+impl Loader for OneScene {
+    fn read(&self, _: &Path) -> std::io::Result<Vec<u8>> {
+        Ok(self.0.as_bytes().to_vec())
+    }
+
+    fn exists(&self, _: &Path) -> bool {
+        true
+    }
+}
+
+#[test]
+fn every_example_of_a_member_gives_what_it_says() {
+    for family in members::FAMILIES {
+        for member in family.members {
+            let (written, gives) = member.example;
+            let mut session = Session::new(Options::default(), Arc::new(OneScene(family.scene)));
+            let (answer, diagnostics) = session.evaluate_expression(written, Some(Path::new("a.scene")));
+            let found = answer.map(|a| a.text(None));
+            assert_eq!(found.as_deref(), Some(gives), "{written}: {diagnostics:#?}");
+        }
     }
 }
 

@@ -23,6 +23,7 @@ pub fn show_reply(
     for said in &reply.said {
         match said {
             Said::Printed(text) => tell(text),
+            Said::Within(error) => tell(format!("± {error:.1e}")),
             Said::Answer(answer) => data(format!("{}\n", answer.text(digits)))?,
         }
     }

@@ -43,6 +43,35 @@ pub(crate) fn any_across<P: Point>(tangent: P) -> P {
     across(axis, tangent).unit().unwrap_or_default()
 }
 
+/// The unit vector towards the centre of curvature, given γ′, γ″, γ‴ and the unit tangent; on a straight stretch some fixed one.
+pub(crate) fn normal_of<P: Point>([_, acceleration, jerk]: &[P; 3], tangent: P) -> P {
+    let bent = |v: P| {
+        let part = across(v, tangent);
+        (part.max_abs() > 8.0 * f64::EPSILON * v.max_abs()).then(|| part.unit()).flatten()
+    };
+    bent(*acceleration).or_else(|| bent(*jerk)).unwrap_or_else(|| any_across(tangent))
+}
+
+/// |γ′ × γ″| / |γ′|³; 0 where the speed is no more than `still`.
+pub(crate) fn curvature_of<P: Point>([velocity, acceleration, _]: &[P; 3], still: f64) -> f64 {
+    let speed = velocity.length();
+    if speed <= still {
+        return 0.0;
+    }
+    across(*acceleration, *velocity / speed).length() / speed / speed
+}
+
+/// (γ′ × γ″)·γ‴ / |γ′ × γ″|²; 0 where the curvature vanishes.
+pub(crate) fn torsion_of([velocity, acceleration, jerk]: &[DVec3; 3]) -> f64 {
+    let (Some(v), Some(a)) = (velocity.unit(), acceleration.unit()) else { return 0.0 };
+    // γ′ × γ″ = |γ′||γ″| (v × a): the lengths are taken out so that no product overflows.
+    let turn = v.cross(a);
+    if turn.max_abs() <= 8.0 * f64::EPSILON {
+        return 0.0;
+    }
+    turn.dot(*jerk) / turn.length_squared() / Point::length(*velocity) / Point::length(*acceleration)
+}
+
 impl<P: Point> Curve<P> {
     /// The piece that holds t; at a seam the one on that side.
     pub(crate) fn piece_from(&self, t: f64, side: Side) -> &Piece<P> {
@@ -91,24 +120,13 @@ impl<P: Point> Curve<P> {
     /// angles to the tangent; zero for a curve of numbers.
     pub fn normal(&self, t: f64) -> Result<P, CurveError> {
         let tangent = self.tangent(t)?;
-        let (piece, t) = self.seen(t, Side::After)?;
-        let [_, acceleration, jerk] = piece.derivatives(t);
-        let bent = |v: P| {
-            let part = across(v, tangent);
-            (part.max_abs() > 8.0 * f64::EPSILON * v.max_abs()).then(|| part.unit()).flatten()
-        };
-        Ok(bent(acceleration).or_else(|| bent(jerk)).unwrap_or_else(|| any_across(tangent)))
+        Ok(normal_of(&self.derivatives(t, Side::After)?, tangent))
     }
 
     /// Curvature κ(t) = |γ′ × γ″| / |γ′|³, per scene unit. 0 where γ′ vanishes.
     pub fn curvature(&self, t: f64) -> Result<f64, CurveError> {
         let (piece, t) = self.seen(t, Side::After)?;
-        let [velocity, acceleration, _] = piece.derivatives(t);
-        let speed = velocity.length();
-        if speed <= piece.still() {
-            return Ok(0.0);
-        }
-        Ok(across(acceleration, velocity / speed).length() / speed / speed)
+        Ok(curvature_of(&piece.derivatives(t), piece.still()))
     }
 }
 
@@ -120,13 +138,6 @@ impl Curve<DVec3> {
 
     /// Torsion τ(t) = (γ′ × γ″)·γ‴ / |γ′ × γ″|², per scene unit. 0 where the curvature vanishes.
     pub fn torsion(&self, t: f64) -> Result<f64, CurveError> {
-        let [velocity, acceleration, jerk] = self.derivatives(t, Side::After)?;
-        let (Some(v), Some(a)) = (velocity.unit(), acceleration.unit()) else { return Ok(0.0) };
-        // γ′ × γ″ = |γ′||γ″| (v × a): the lengths are taken out so that no product overflows.
-        let turn = v.cross(a);
-        if turn.max_abs() <= 8.0 * f64::EPSILON {
-            return Ok(0.0);
-        }
-        Ok(turn.dot(jerk) / turn.length_squared() / Point::length(velocity) / Point::length(acceleration))
+        Ok(torsion_of(&self.derivatives(t, Side::After)?))
     }
 }

@@ -25,7 +25,7 @@ pub use bspline::Ends;
 pub use catmull::CatmullRom;
 pub use continuity::Seam;
 pub use differential::Side;
-pub(crate) use differential::{across, any_across, tangent_of};
+pub(crate) use differential::{across, any_across, curvature_of, normal_of, tangent_of, torsion_of};
 pub use error::CurveError;
 pub use evaluate::Method;
 pub use piece::Piece;

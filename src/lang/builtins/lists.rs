@@ -3,6 +3,7 @@
 use super::{components, wrong_argument};
 use crate::diag::{Code, Diagnostic, Span};
 use crate::lang::coerce;
+use crate::lang::members;
 use crate::lang::table::{Arguments, Builtin, BuiltinBody::*, Context, Outcome, Parameter, Reported};
 use crate::lang::value::{RangeValue, Value, vector};
 use std::rc::Rc;
@@ -132,6 +133,7 @@ fn function_argument<'a>(
 ) -> Outcome<&'a Value> {
     match &arguments.values[i] {
         f @ (Value::Function(_) | Value::Builtin(_)) => Ok(f),
+        f if members::call_of(f).is_some() => Ok(f),
         _ => Err(misfit(ctx, arguments, name, i)),
     }
 }

@@ -6,6 +6,7 @@ use super::{Captures, Compiled, Compiler, DEEPEST, Frame};
 use crate::diag::{Code, Diagnostic, Span};
 use crate::lang::builtins;
 use crate::lang::eval::operators;
+use crate::lang::members::{self, Form};
 use crate::lang::resolve::program::{
     Access, Argument, CallBuiltin, CallFunction, CallValue, Capture, FunctionBody, FunctionId,
 };
@@ -59,6 +60,9 @@ impl<'c> Compiler<'c> {
             Symbol::Known(Value::Builtin(builtin)) => {
                 let spans: Vec<Span> = call.arguments.iter().map(|a| a.value.span).collect();
                 self.builtin(builtin, values, &spans, span)
+            }
+            Symbol::Known(value) if members::call_of(&value).is_some() => {
+                self.member(&value, "", Form::Call, (&call.arguments, values), span)
             }
             other => Err(self.not_callable(&other, call.callee.span)),
         }

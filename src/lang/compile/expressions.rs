@@ -4,6 +4,7 @@ use super::symbol::{CapturedSymbol, Symbol, symbol_of};
 use super::{Captures, Compiled, Compiler, LONGEST, Stop};
 use crate::diag::{Code, Span};
 use crate::lang::eval::{equal, operators, place, swizzle};
+use crate::lang::members;
 use crate::lang::resolve::program::{Access, Arithmetic, Comparison, Comprehension, Expr, ExprKind, Range};
 use crate::lang::value::{RangeValue, Value};
 use crate::math::field::{Binary, Register, Unary};
@@ -70,7 +71,7 @@ impl<'c> Compiler<'c> {
             ExprKind::Text(_) => Err(self.impossible("texts are not made", e.span)),
             ExprKind::With(_) => Err(self.impossible("`with` does not run", e.span)),
             ExprKind::Block(_) => Err(self.impossible("blocks are not built", e.span)),
-            ExprKind::CallMethod(call) => Err(self.impossible("methods are not called", call.name_span)),
+            ExprKind::CallMethod(call) => self.call_method(call, e.span),
             ExprKind::Poison => Err(Stop::Silent),
         }
     }
@@ -414,7 +415,13 @@ impl<'c> Compiler<'c> {
 
     pub(super) fn field(&mut self, base: &Symbol, name: &str, span: Span) -> Compiled {
         let found = match base {
-            Symbol::Known(value) => swizzle(value, name).map(Symbol::Known),
+            Symbol::Known(value) => match swizzle(value, name) {
+                Some(value) => Some(Symbol::Known(value)),
+                None => match members::field(self.host, value, name, span) {
+                    Some(outcome) => Some(Symbol::Known(outcome?)),
+                    None => return Err(members::unknown(value, name, members::Form::Field, span).into()),
+                },
+            },
             Symbol::Record(parts) => parts.iter().find(|(n, _)| *n == name).map(|(_, s)| s.clone()),
             Symbol::Vector(registers) => crate::lang::eval::letters(name, registers.len())
                 .map(|picked| number_or_vector(picked.iter().map(|i| registers[*i]).collect())),

@@ -8,6 +8,7 @@ mod calls;
 mod expressions;
 mod items;
 mod lists;
+mod members;
 mod symbol;
 
 use super::eval::slots::{Captured, Empty, Slot};

@@ -5,6 +5,7 @@ use super::{Around, Call, Evaluator, Flow, Produced};
 use crate::diag::{Code, Diagnostic, Span};
 use crate::lang::builtins;
 use crate::lang::coerce::shown;
+use crate::lang::members::{self, Ask, Form, Member};
 use crate::lang::resolve::program::{
     Access, Argument, CallBuiltin, CallFunction, CallMethod, CallValue, FunctionBody, FunctionId,
 };
@@ -132,6 +133,11 @@ impl<'p> Evaluator<'p> {
 
     pub(super) fn call_value(&mut self, call: &'p CallValue, span: Span) -> Outcome {
         let callee = self.expr(&call.callee);
+        if let Ok(value) = &callee
+            && let Some(member) = members::call_of(value)
+        {
+            return self.call_member(member, value, &call.arguments, span);
+        }
         let arguments = self.argument_values(&call.arguments);
         let (callee, arguments) = (callee?, arguments?);
         match &callee {
@@ -237,23 +243,38 @@ impl<'p> Evaluator<'p> {
         values: Vec<Value>,
         span: Span,
     ) -> Outcome {
-        let mut bound: Vec<Option<(Value, Span)>> =
-            builtin.parameters.iter().map(|p| Some((builtins::default_value(p.default?)?, span))).collect();
-        for (position, (argument, value)) in arguments.iter().zip(values).enumerate() {
-            let named = |name: &str| builtin.parameters.iter().position(|p| p.name == name);
-            let i = argument.name.as_ref().map_or(Some(position), |(name, _)| named(name));
-            match i {
-                Some(i) if i < bound.len() => bound[i] = Some((value, argument.value.span)),
-                Some(_) if builtin.variadic => bound.push(Some((value, argument.value.span))),
-                Some(_) | None => return Err(self.wrong_builtin_count(builtin, span)),
-            }
-        }
-        match bound.into_iter().collect::<Option<Vec<_>>>() {
-            Some(bound) => {
-                let (values, spans): (Vec<Value>, Vec<Span>) = bound.into_iter().unzip();
-                self.call_table(builtin, &values, &spans, span)
-            }
+        let given =
+            arguments.iter().map(|a| (a.name.as_ref().map(|(name, _)| &**name), a.value.span)).zip(values);
+        match members::bound(builtin.parameters, builtin.variadic, given, span) {
+            Some((values, spans)) => self.call_table(builtin, &values, &spans, span),
             None => Err(self.wrong_builtin_count(builtin, span)),
+        }
+    }
+
+    /// A member that is called. One argument, the common case, is passed without a list.
+    fn call_member(
+        &mut self,
+        member: &'static Member,
+        value: &Value,
+        arguments: &'p [Argument],
+        span: Span,
+    ) -> Outcome {
+        if let ([Argument { name: None, value: argument }], [_]) = (arguments, member.parameters) {
+            let (given, spans) = ([self.expr(argument)?], [argument.span]);
+            self.estimate = None;
+            let arguments = Arguments { values: &given, spans: &spans, span };
+            return (member.body)(self, &Ask { member, value, arguments: &arguments });
+        }
+        let values = self.argument_values(arguments)?;
+        let given =
+            arguments.iter().map(|a| (a.name.as_ref().map(|(name, _)| &**name), a.value.span)).zip(values);
+        match members::bound(member.parameters, false, given, span) {
+            Some((values, spans)) => {
+                self.estimate = None;
+                let arguments = Arguments { values: &values, spans: &spans, span };
+                (member.body)(self, &Ask { member, value, arguments: &arguments })
+            }
+            None => Err(self.fail(members::wrong_arguments(member, value, span))),
         }
     }
 
@@ -304,7 +325,15 @@ impl<'p> Evaluator<'p> {
                 let spans = vec![at; values.len()];
                 self.call_table(builtin, &values, &spans, at)
             }
-            other => Err(self.not_callable(other, at)),
+            other => match members::call_of(other) {
+                Some(member) if arguments.len() == member.parameters.len() => {
+                    let spans = vec![at; arguments.len()];
+                    let arguments = Arguments { values: arguments, spans: &spans, span: at };
+                    (member.body)(self, &Ask { member, value: other, arguments: &arguments })
+                }
+                Some(member) => Err(self.fail(members::wrong_arguments(member, other, at))),
+                None => Err(self.not_callable(other, at)),
+            },
         }
     }
 
@@ -319,16 +348,34 @@ impl<'p> Evaluator<'p> {
         })
     }
 
-    /// A method of a value. No value that is built yet has any.
-    pub(super) fn call_method(&mut self, call: &'p CallMethod) -> Outcome {
-        let base = self.expr(&call.base);
-        let arguments = self.argument_values(&call.arguments);
-        let (base, _) = (base?, arguments?);
-        let message = format!("{} has no method `{}`", shown(&base), call.name);
-        let said = Diagnostic::new(Code::NoSuchField, call.name_span, message);
+    /// `value.name(…)`: a method, or a field whose value is called.
+    pub(super) fn call_method(&mut self, call: &'p CallMethod, span: Span) -> Outcome {
+        let base = match self.expr(&call.base) {
+            Ok(base) => base,
+            Err(reported) => {
+                self.argument_values(&call.arguments)?;
+                return Err(reported);
+            }
+        };
+        let from_name = Span { end: span.end, ..call.name_span };
+        if let Some(member) = members::find(&base, &call.name, Form::Method) {
+            return self.call_member(member, &base, &call.arguments, from_name);
+        }
+        if members::find(&base, &call.name, Form::Field).is_some()
+            && let Some(field) = members::field(self, &base, &call.name, call.name_span)
+        {
+            let field = field?;
+            if let Some(member) = members::call_of(&field) {
+                return self.call_member(member, &field, &call.arguments, from_name);
+            }
+        }
+        self.argument_values(&call.arguments)?;
+        let said = members::unknown(&base, &call.name, Form::Method, call.name_span);
         Err(self.fail(match builtins::find(&call.name) {
-            Some(_) => said.hint(format!("`{0}` is a function: write `{0}(value, …)`", call.name)),
-            None => said,
+            Some(_) if said.hints.is_empty() => {
+                said.hint(format!("`{0}` is a function: write `{0}(value, …)`", call.name))
+            }
+            _ => said,
         }))
     }
 }

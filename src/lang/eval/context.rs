@@ -3,6 +3,7 @@
 use super::{Evaluator, Said};
 use crate::diag::{Diagnostic, Span};
 use crate::lang::compile;
+use crate::lang::members;
 use crate::lang::table::{Context, Outcome};
 use crate::lang::value::Value;
 use crate::scene::assets::Loader;
@@ -29,7 +30,7 @@ impl Context for Evaluator<'_> {
                 let needed = builtin.parameters.iter().filter(|p| p.default.is_none()).count();
                 Some((builtin.parameters.len(), needed))
             }
-            _ => None,
+            other => members::call_of(other).map(|member| (member.parameters.len(), member.parameters.len())),
         }
     }
 
@@ -58,6 +59,10 @@ impl Context for Evaluator<'_> {
 
     fn reserve(&mut self, elements: usize, at: Span) -> Outcome<()> {
         self.reserve_list(elements, at)
+    }
+
+    fn estimated(&mut self, error: f64) {
+        self.estimate = Some(error);
     }
 
     fn time(&self) -> (f64, f64) {

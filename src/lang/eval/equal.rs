@@ -18,6 +18,13 @@ pub fn equal(a: &Value, b: &Value) -> bool {
                     waiting.extend(u.iter().cloned().zip(v.iter().cloned()));
                 }
             }
+            (Value::Record(u), Value::Record(v)) => {
+                let alike = |((m, _), (n, _)): (&(&str, Value), &(&str, Value))| m == n;
+                if u.parts.len() != v.parts.len() || !u.parts.iter().zip(&v.parts).all(alike) {
+                    return false;
+                }
+                waiting.extend(u.parts.iter().zip(&v.parts).map(|((_, a), (_, b))| (a.clone(), b.clone())));
+            }
             _ if !same(&a, &b) => return false,
             _ => {}
         }

@@ -59,7 +59,7 @@ impl<'p> Evaluator<'p> {
             ExprKind::Text(parts) => self.text(parts, e.span),
             ExprKind::Range(range) => self.range(range, e.span),
             ExprKind::CallValue(call) => self.call_value(call, e.span),
-            ExprKind::CallMethod(call) => self.call_method(call),
+            ExprKind::CallMethod(call) => self.call_method(call, e.span),
             ExprKind::Field(parts) => self.field(&parts.0, &parts.1, parts.2),
             ExprKind::With(with) => self.with(with, e.span),
             ExprKind::Lambda(function, captures) => {

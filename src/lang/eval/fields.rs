@@ -3,6 +3,7 @@
 use super::Evaluator;
 use crate::diag::{Code, Diagnostic, Span};
 use crate::lang::coerce::shown;
+use crate::lang::members;
 use crate::lang::resolve::program::Expr;
 use crate::lang::table::{Context, Outcome, Reported};
 use crate::lang::value::{Value, vector};
@@ -21,7 +22,9 @@ impl<'p> Evaluator<'p> {
             Value::Vector4(v) => v[usize::from(i)],
             _ => {
                 let name = &LETTERS[0][usize::from(i)..=usize::from(i)];
-                return Err(self.no_field(&value, name, Span { start: span.end.saturating_sub(1), ..span }));
+                let place = Span { start: span.end.saturating_sub(1), ..span };
+                return members::field(self, &value, name, place)
+                    .unwrap_or_else(|| Err(self.no_field(&value, name, place)));
             }
         };
         Ok(Value::Number(component))
@@ -29,15 +32,19 @@ impl<'p> Evaluator<'p> {
 
     pub(super) fn field(&mut self, base: &'p Expr, name: &str, name_span: Span) -> Outcome {
         let value = self.expr(base)?;
-        match swizzle(&value, name) {
-            Some(value) => Ok(value),
+        if let Some(value) = swizzle(&value, name) {
+            return Ok(value);
+        }
+        self.estimate = None;
+        match members::field(self, &value, name, name_span) {
+            Some(outcome) => outcome,
             None => Err(self.no_field(&value, name, name_span)),
         }
     }
 
     #[cold]
     fn no_field(&mut self, value: &Value, name: &str, span: Span) -> Reported {
-        let said = Diagnostic::new(Code::NoSuchField, span, format!("{} has no `.{name}`", shown(value)));
+        let said = members::unknown(value, name, members::Form::Field, span);
         let count = components(value).len();
         self.fail(match value {
             Value::Vector2(_) | Value::Vector3(_) | Value::Vector4(_) => {

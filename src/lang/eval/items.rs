@@ -43,6 +43,7 @@ impl<'p> Evaluator<'p> {
             ItemKind::Property(property) => self.property(property, out)?,
             ItemKind::Block(block) => self.block_item(block, out)?,
             ItemKind::Place(value) => {
+                self.estimate = None;
                 let placed = self.expr(value)?;
                 if self.run.answers != Some(value.span.source) || self.answer(&placed, value, out) {
                     self.place(placed, value, out)?;
@@ -78,6 +79,9 @@ impl<'p> Evaluator<'p> {
         };
         if !gives_nothing {
             self.said.push(Said::Answer(value.clone()));
+            let direct = matches!(written.kind, ExprKind::Field(_) | ExprKind::CallMethod(_));
+            let estimate = self.estimate.take().filter(|_| direct);
+            self.said.extend(estimate.map(Said::Within));
         }
         let mut waiting = vec![value];
         while let Some(value) = waiting.pop() {

@@ -74,6 +74,8 @@ pub enum Said {
     Printed(String),
     /// The value of an expression that stands as an item of [`Run::answers`].
     Answer(Value),
+    /// What the number answered last may be off by, where more than its last digit is known to be uncertain.
+    Within(f64),
 }
 
 /// What a run gives.
@@ -184,6 +186,8 @@ struct Evaluator<'p> {
     returned: Option<Outcome>,
     /// A value that the fast path of numbers could not carry.
     spilled: Outcome,
+    /// What the last number of a member may be off by, where it said so.
+    estimate: Option<f64>,
     top: Top,
     guards: Guards,
     sink: &'p mut Sink,
@@ -204,6 +208,7 @@ impl<'p> Evaluator<'p> {
             calls: Vec::new(),
             returned: None,
             spilled: Err(Reported),
+            estimate: None,
             top: Top::default(),
             guards: Guards::new(&run.limits, run.stack),
             sink,

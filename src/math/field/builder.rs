@@ -1,7 +1,8 @@
 //! Making a tape, step by step.
 
-use super::{Binary, Call1, Call2, CallN, FaultKind, Field, MAX_CALL, Op, Register, Unary};
+use super::{Binary, Call1, Call2, CallN, FaultKind, Field, Held, MAX_CALL, Op, Register, Unary};
 use std::collections::HashMap;
+use std::sync::Arc;
 
 /// Turns that all loops of one evaluation may take, unless the maker says otherwise: far above any sum or fractal, and low
 /// enough that a picture of an endless loop still ends.
@@ -27,6 +28,7 @@ pub struct FieldBuilder {
     initial: Vec<f64>,
     constants: HashMap<u64, Register>,
     tables: Vec<Box<[f64]>>,
+    held: Vec<Arc<dyn Held>>,
     /// The step of each label, once it is bound.
     labels: Vec<Option<u32>>,
     turn_limit: u32,
@@ -44,6 +46,7 @@ impl FieldBuilder {
             initial: vec![0.0; n_inputs],
             constants: HashMap::new(),
             tables: Vec::new(),
+            held: Vec::new(),
             labels: Vec::new(),
             turn_limit: TURN_LIMIT,
             too_large: false,
@@ -144,6 +147,21 @@ impl FieldBuilder {
         (0..n_results).map(|i| Register(to.0.wrapping_add(i as u16))).collect()
     }
 
+    /// A held function of up to [`MAX_CALL`] arguments, with up to as many results; the result registers, in order.
+    pub fn call_held(&mut self, f: Arc<dyn Held>, arguments: &[Register], n_results: usize) -> Vec<Register> {
+        let number = u16::try_from(self.held.len());
+        if arguments.len() > MAX_CALL || n_results > MAX_CALL || number.is_err() {
+            self.too_large = true;
+            return vec![Register(0); n_results];
+        }
+        self.held.push(f);
+        let from = self.list(arguments);
+        let to = self.fresh(n_results);
+        let (n_from, n_to) = (arguments.len() as u8, n_results as u8);
+        self.push(Op::CallHeld { held: number.unwrap_or(0), from, n_from, to, n_to });
+        (0..n_results).map(|i| Register(to.0.wrapping_add(i as u16))).collect()
+    }
+
     /// Element `index` of constant numbers. A list of vectors is a table per component.
     pub fn table(&mut self, table: TableId, index: Register) -> Register {
         let to = self.fresh(1);
@@ -227,6 +245,7 @@ impl FieldBuilder {
             sites: self.sites.into(),
             initial: self.initial.into(),
             tables: self.tables.into(),
+            held: self.held.into(),
             outputs: outputs.into(),
             turn_limit: self.turn_limit,
         })

@@ -1,6 +1,6 @@
 //! Running a tape on points.
 
-use super::{Binary, CallN, Fault, FaultKind, Field, MAX_CALL, Op, Register, Unary};
+use super::{Binary, CallN, Fault, FaultKind, Field, Held, MAX_CALL, Op, Register, Unary};
 use crate::math::elementary::powf;
 use std::cell::Cell;
 
@@ -81,6 +81,10 @@ fn step(field: &Field, op: Op, r: &mut [f64]) -> Result<Option<u32>, FaultKind> 
         Op::CallN { f, from, n_from, to, n_to } => {
             call_n(f, r, from.index(), n_from as usize, to.index(), n_to as usize)?;
         }
+        Op::CallHeld { held, from, n_from, to, n_to } => {
+            let f = &*field.held[held as usize];
+            call_held(f, r, from.index(), n_from as usize, to.index(), n_to as usize)?;
+        }
         Op::Table(to, index, table) => {
             let table = &field.tables[table as usize];
             r[to.index()] = table[place(get(index), table.len())?];
@@ -155,6 +159,25 @@ fn call_n(f: CallN, r: &mut [f64], from: usize, n: usize, to: usize, m: usize) -
     let (mut arguments, mut results) = ([0.0; MAX_CALL], [0.0; MAX_CALL]);
     arguments[..n].copy_from_slice(&r[from..from + n]);
     f(&arguments[..n], &mut results[..m]);
+    results[..m].iter().try_for_each(|&x| checked(x, true).map(drop))?;
+    r[to..to + m].copy_from_slice(&results[..m]);
+    Ok(())
+}
+
+/// The same for a function that the tape holds.
+fn call_held(
+    f: &dyn Held,
+    r: &mut [f64],
+    from: usize,
+    n: usize,
+    to: usize,
+    m: usize,
+) -> Result<(), FaultKind> {
+    let (mut arguments, mut results) = ([0.0; MAX_CALL], [0.0; MAX_CALL]);
+    arguments[..n].copy_from_slice(&r[from..from + n]);
+    if !f.call(&arguments[..n], &mut results[..m]) {
+        return Err(FaultKind::Undefined);
+    }
     results[..m].iter().try_for_each(|&x| checked(x, true).map(drop))?;
     r[to..to + m].copy_from_slice(&results[..m]);
     Ok(())

@@ -11,7 +11,12 @@ pub fn worded(block: &Block, form: &str, error: &CurveError) -> Diagnostic {
     let said = |place: Span| Diagnostic::new(Code::BadProperty, place, sentence(error));
     match error {
         CurveError::PointCount { given, .. } => {
-            said(name_place(block, form)).label(format!("{given} points")).hint(counts(block, form, *given))
+            let said = Diagnostic::new(
+                Code::BadProperty,
+                name_place(block, form),
+                count_sentence(block, form, error),
+            );
+            said.label(format!("{given} points")).hint(counts(block, form, *given))
         }
         CurveError::SlopeCount { expected, .. } => said(name_place(block, "slopes"))
             .also(name_place(block, form), format!("{expected} points here"))
@@ -63,14 +68,40 @@ fn are(n: usize) -> String {
     if n == 1 { "is 1".into() } else { format!("are {n}") }
 }
 
+/// What is wrong with the number of points; a chain of fours says how it goes on.
+fn count_sentence(block: &Block, form: &str, error: &CurveError) -> String {
+    match error {
+        CurveError::PointCount { given, .. } if form == "points" => {
+            let stride = stride(block);
+            let counts = match block.flag("closed") {
+                Some(true) => {
+                    format!("a closed chain that moves on by {stride} takes a multiple of {stride}")
+                }
+                _ => format!(
+                    "a chain of fours that moves on by {stride} takes {}, {}, {}, …",
+                    4,
+                    4 + stride,
+                    4 + 2 * stride
+                ),
+            };
+            format!("{counts} points, not {given}")
+        }
+        other => sentence(other),
+    }
+}
+
+/// How far a chain moves on.
+fn stride(block: &Block) -> usize {
+    block.integer("stride").map_or_else(|| super::basis(block).stride(), |n| n as usize)
+}
+
 /// The numbers of points that would do.
 fn counts(block: &Block, form: &str, given: usize) -> String {
     let closed = block.flag("closed") == Some(true);
     let (stride, least) = match form {
         "bezier" => (3, if closed { 3 } else { 4 }),
         "points" => {
-            let own = || super::basis(block).stride();
-            let stride = block.integer("stride").map_or_else(own, |n| n as usize);
+            let stride = stride(block);
             (stride, if closed { stride } else { 4 })
         }
         "monomial" => return "give the coefficients of 1, t, t² and t³; 0 for those that are missing".into(),
