@@ -214,6 +214,20 @@ fn nesting_is_read_fast_and_past_the_limit_refused() {
     );
 }
 
+/// Read again at each of its braces, this took half a minute.
+#[test]
+fn a_fault_deep_inside_braces_is_found_without_reading_at_each_of_them() {
+    let deep = |inner: &str| {
+        let (open, close) = (format!("{}joint j {{", ";".repeat(20)).repeat(200), "}".repeat(200));
+        format!("light {{ {open} {inner} {close} }}\nsphere {{ radius 2 * }}\n")
+    };
+    let started = Instant::now();
+    assert_eq!(faults(&deep("radius )")).len(), 2);
+    assert_eq!(faults(&deep("radius 1 +")), ["E0001 «+»", "E0001 «*»"]);
+    assert_eq!(faults(&deep("a 1 +  joint j { b 2 * }  c 3")).len(), 3);
+    assert!(started.elapsed() < Duration::from_secs(5), "took {:?}", started.elapsed());
+}
+
 #[test]
 fn endless_brackets_and_chains_neither_crash_nor_hang() {
     let n = 100_000;

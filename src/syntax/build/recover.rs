@@ -174,18 +174,22 @@ impl Mender<'_> {
 
     /// Mends what stands between two braces. In a block of another language, nothing can be mended.
     fn inside(&mut self, open: usize, close: usize) {
-        let before = self.work[..open].trim_end();
-        let word = before.rsplit(|c: char| !(c.is_alphanumeric() || c == '_')).next().unwrap_or_default();
-        let foreign = !is_reserved(word) && near_kind(word).is_none() && close > open + 1;
-        let heads_line = before[..before.len() - word.len()].trim_end_matches([' ', '\t']);
-        if foreign
-            && !word.is_empty()
-            && (heads_line.is_empty() || heads_line.ends_with(['\n', '{', '}', ';']))
-        {
+        if self.is_foreign(open) && close > open + 1 {
             self.strike(open + 1, close, None);
         } else {
             self.region(open + 1, close);
         }
+    }
+
+    /// Whether a brace opens a block of another language: a word that is no kind nor near one heads its line.
+    fn is_foreign(&self, open: usize) -> bool {
+        let before = self.work[..open].trim_end();
+        let word = before.rsplit(|c: char| !(c.is_alphanumeric() || c == '_')).next().unwrap_or_default();
+        let heads_line = before[..before.len() - word.len()].trim_end_matches([' ', '\t']);
+        !word.is_empty()
+            && !is_reserved(word)
+            && near_kind(word).is_none()
+            && (heads_line.is_empty() || heads_line.ends_with(['\n', '{', '}', ';']))
     }
 
     /// Where reading stopped at the very beginning of an item, the item before it may have broken off there: then that is
@@ -218,7 +222,8 @@ impl Mender<'_> {
         Pieces::new(&self.work, at, end).find(|p| p.text != ";").map(|p| p.start)
     }
 
-    /// The outermost braces behind `item` that hold `place` and have not been looked into.
+    /// The braces behind `item` that hold `place` and have not been looked into: the outermost of another language, else
+    /// the innermost, so that a fault many braces deep is not read for again at each of them.
     fn braces_around(&mut self, item: usize, place: usize, end: usize) -> Option<(usize, usize)> {
         let mut open = Vec::new();
         for event in Events::new(&self.work[item..end]) {
@@ -232,7 +237,9 @@ impl Mender<'_> {
                 _ => break,
             }
         }
-        let (open, _) = open.into_iter().find(|(at, byte)| *byte == b'{' && !self.seen.contains(at))?;
+        open.retain(|(at, byte)| *byte == b'{' && !self.seen.contains(at));
+        let foreign = open.iter().find(|(at, _)| self.is_foreign(*at));
+        let (open, _) = *foreign.or(open.last())?;
         self.seen.insert(open);
         let group = Pieces::new(&self.work, open, end).next()?;
         Some((open, group.end - 1))
