@@ -82,6 +82,17 @@ fn a_property_ends_where_the_next_item_begins() {
 }
 
 #[test]
+fn a_tight_bracket_is_an_index_or_a_call_and_never_another_item() {
+    assert_eq!(tree("l [e for e in m]"), tree("l  [e for e in m]"));
+    assert_eq!(tree("l\n[e for e in m]"), tree("l; [e for e in m]"));
+    for text in ["l[e for e in m]", "radius 1(2)", "radius l[e for e in m]", "let a = <1, 2>[0]", "(a)[]"] {
+        assert!(!parse(text).1.is_empty(), "{text}");
+        assert!(format(text).is_err(), "{text}");
+    }
+    assert_eq!(faults("l[e for e in m]\nradius 1"), ["E0001 «for»"]);
+}
+
+#[test]
 fn kinds_tell_blocks_from_labels_and_properties() {
     assert_eq!(tree("surface tube { }"), "property surface\n  block tube\n");
     assert_eq!(tree("joint elbow { }"), "block joint elbow\n");
