@@ -156,6 +156,24 @@ pub enum PatternKind {
     Function(Arc<SampledFunction>),
 }
 
+impl PatternKind {
+    /// The textures that the rule is made of, in the order in which they are written.
+    pub fn parts(&self) -> Vec<&Texture> {
+        match self {
+            PatternKind::Checker(a, b)
+            | PatternKind::Gradient(a, b)
+            | PatternKind::Marble(a, b)
+            | PatternKind::Wood(a, b)
+            | PatternKind::Noise(a, b) => vec![a, b],
+            PatternKind::Stripes(slabs) => slabs.iter().collect(),
+            PatternKind::Ramp(input, stops) => {
+                std::iter::once(input).chain(stops.iter().map(|(_, texture)| texture)).collect()
+            }
+            PatternKind::Image(_) | PatternKind::Function(_) => Vec::new(),
+        }
+    }
+}
+
 /// A picture as a pattern.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ImagePattern {

@@ -21,7 +21,7 @@ pub static ALL: &[Builtin] = &[
         TWO,
         General(|ctx, arguments| {
             let [a, b] = two(ctx, arguments)?;
-            Ok(made(PatternKind::Checker(a, b), arguments.span))
+            made(ctx, PatternKind::Checker(a, b), arguments.span)
         }),
         "Unit cubes in alternation, one of them `a` and centred on the origin.",
         ("checker(white, 0.3)", "a pattern"),
@@ -31,7 +31,7 @@ pub static ALL: &[Builtin] = &[
         TWO,
         General(|ctx, arguments| {
             let textures = textures(ctx, arguments, 0)?;
-            Ok(made(PatternKind::Stripes(textures), arguments.span))
+            made(ctx, PatternKind::Stripes(textures), arguments.span)
         }),
         "Slabs one unit thick across the x axis in turn, the first centred on the origin.",
         ("stripes(red, white, blue)", "a pattern"),
@@ -42,7 +42,7 @@ pub static ALL: &[Builtin] = &[
         TWO,
         General(|ctx, arguments| {
             let [a, b] = two(ctx, arguments)?;
-            Ok(made(PatternKind::Gradient(a, b), arguments.span))
+            made(ctx, PatternKind::Gradient(a, b), arguments.span)
         }),
         "From `a` at y = 0 to `b` at y = 1; beyond, the nearer of them.",
         ("gradient(navy, white)", "a pattern"),
@@ -106,8 +106,36 @@ pub fn of_builtin(builtin: &Builtin, span: Option<Span>) -> Option<Pattern> {
     (builtin.name == "noise").then_some(Pattern { kind, transform: None, span })
 }
 
-fn made(kind: PatternKind, span: Span) -> Value {
-    Value::Pattern(Arc::new(Pattern { kind, transform: None, span }))
+/// Patterns in a pattern, at most, each as often as it is written: every point of a surface may ask for all of them, one inside
+/// the other.
+const MOST_PATTERNS: usize = 1000;
+
+fn made(ctx: &mut dyn Context, kind: PatternKind, span: Span) -> Outcome {
+    let pattern = Pattern { kind, transform: None, span };
+    let mut left = MOST_PATTERNS;
+    if !fits(&pattern, &mut left) {
+        let said = Diagnostic::new(
+            Code::TooDeep,
+            span,
+            format!("this pattern is made of more than {MOST_PATTERNS} patterns"),
+        )
+        .label("one too many here")
+        .hint("a function of the point, `p => …`, or a picture does with one what many patterns do together");
+        return Err(ctx.fail(said));
+    }
+    Ok(Value::Pattern(Arc::new(pattern)))
+}
+
+/// Takes the patterns of a pattern from what is left; false where that is not enough.
+fn fits(pattern: &Pattern, left: &mut usize) -> bool {
+    if *left == 0 {
+        return false;
+    }
+    *left -= 1;
+    pattern.kind.parts().iter().all(|texture| match texture {
+        Texture::Constant(_) => true,
+        Texture::Pattern(inner) => fits(inner, left),
+    })
 }
 
 fn textures(ctx: &mut dyn Context, arguments: &Arguments<'_>, from: usize) -> Outcome<Vec<Texture>> {
@@ -154,7 +182,7 @@ fn ramp(ctx: &mut dyn Context, arguments: &Arguments<'_>) -> Outcome {
         .hint("sort the stops by their positions");
         return Err(ctx.fail(said));
     }
-    Ok(made(PatternKind::Ramp(source, stops), arguments.span))
+    made(ctx, PatternKind::Ramp(source, stops), arguments.span)
 }
 
 fn stop(ctx: &mut dyn Context, value: &Value, span: Span) -> Outcome<(f64, Texture)> {
@@ -193,7 +221,7 @@ fn image(ctx: &mut dyn Context, arguments: &Arguments<'_>) -> Outcome {
         choice(ctx, arguments, 2, "filter", &[("bilinear", Filter::Bilinear), ("nearest", Filter::Nearest)])?;
     let path = crate::lang::kinds::existing_file(ctx, written, span)?;
     let pattern = ImagePattern { path, wrap, filter, colour: true, span, picture: Picture::default() };
-    Ok(made(PatternKind::Image(pattern), arguments.span))
+    made(ctx, PatternKind::Image(pattern), arguments.span)
 }
 
 /// One of some words, quoted as arguments are.
@@ -227,5 +255,5 @@ fn choice<T: Copy>(
 
 fn from_hit(ctx: &mut dyn Context, arguments: &Arguments<'_>) -> Outcome {
     let function = ctx.sampled(&arguments.values[0], SampleInput::Hit, &[1, 3], arguments.spans[0])?;
-    Ok(made(PatternKind::Function(function), arguments.span))
+    made(ctx, PatternKind::Function(function), arguments.span)
 }

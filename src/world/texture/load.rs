@@ -46,20 +46,10 @@ fn load(texture: &Texture, cache: &AssetCache<'_>, faults: &mut Vec<Diagnostic>)
 }
 
 fn load_pattern(pattern: &Pattern, cache: &AssetCache<'_>, faults: &mut Vec<Diagnostic>) {
-    match &pattern.kind {
-        PatternKind::Image(image) => load_image(image, cache, faults),
-        PatternKind::Checker(a, b)
-        | PatternKind::Gradient(a, b)
-        | PatternKind::Marble(a, b)
-        | PatternKind::Wood(a, b)
-        | PatternKind::Noise(a, b) => [a, b].into_iter().for_each(|t| load(t, cache, faults)),
-        PatternKind::Stripes(slabs) => slabs.iter().for_each(|t| load(t, cache, faults)),
-        PatternKind::Ramp(input, stops) => {
-            load(input, cache, faults);
-            stops.iter().for_each(|(_, t)| load(t, cache, faults));
-        }
-        PatternKind::Function(_) => {}
+    if let PatternKind::Image(image) = &pattern.kind {
+        load_image(image, cache, faults);
     }
+    pattern.kind.parts().into_iter().for_each(|part| load(part, cache, faults));
 }
 
 fn load_image(image: &ImagePattern, cache: &AssetCache<'_>, faults: &mut Vec<Diagnostic>) {
