@@ -137,6 +137,11 @@ impl Sink {
         }
     }
 
+    /// Whether the same code already stands at the same place, so that this one would be dropped.
+    pub fn holds(&self, diagnostic: &Diagnostic) -> bool {
+        self.seen.contains(&(diagnostic.code, diagnostic.span))
+    }
+
     /// Takes many.
     pub fn extend(&mut self, diagnostics: impl IntoIterator<Item = Diagnostic>) {
         diagnostics.into_iter().for_each(|d| self.push(d));

@@ -1,7 +1,9 @@
 //! Values as text: numbers in the shortest form that reads back the same, vectors `<a, b>`, lists `[a, b]`.
 //! Shared by `ogee eval`, interpolation, `print` and messages.
 
-use super::value::{Record, Value};
+use super::value::{List, Record, Value};
+use std::collections::HashMap;
+use std::rc::Rc;
 
 /// How a value is written.
 #[derive(Clone, Copy, Debug, Default)]
@@ -56,6 +58,26 @@ pub fn number_to(x: f64, digits: usize) -> String {
     }
     let scientific = format!("{:.*e}", digits.max(1) - 1, x);
     scientific.parse().map_or(scientific, number)
+}
+
+/// Of how many values a value is written, each as often as it is written: a list that holds one list twice counts it twice,
+/// which doubles with each list around it. Never more than `usize::MAX`.
+pub fn pieces(value: &Value) -> usize {
+    counted(value, 0, &mut HashMap::new())
+}
+
+fn counted(value: &Value, depth: usize, known: &mut HashMap<(*const List, usize), usize>) -> usize {
+    let Value::List(list) = value else { return 1 };
+    if depth >= DEEPEST {
+        return 1;
+    }
+    let place = (Rc::as_ptr(list), depth);
+    if let Some(count) = known.get(&place) {
+        return *count;
+    }
+    let count = list.iter().fold(1usize, |sum, e| sum.saturating_add(counted(e, depth + 1, known)));
+    known.insert(place, count);
+    count
 }
 
 fn write(out: &mut String, value: &Value, style: Style, depth: usize) {

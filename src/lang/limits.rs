@@ -9,7 +9,8 @@ pub struct Limits {
     pub nesting: usize,
     /// How deeply calls may nest (`calls`).
     pub calls: usize,
-    /// How many turns all loops of a run may take, each call counting as a turn (`turns`).
+    /// How many turns all loops of a run may take; each call counts as a turn, and each element that a function of lists goes
+    /// through (`turns`).
     pub turns: u64,
     /// How many elements one list may have (`list`).
     pub list: usize,

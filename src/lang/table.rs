@@ -46,7 +46,7 @@ pub trait Context {
         outputs: &[usize],
         at: Span,
     ) -> Outcome<Arc<SampledFunction>>;
-    /// Counts `elements` list elements (or bytes / 32) that are about to be made against the guards.
+    /// Counts `elements` list elements (or bytes / 32) that are about to be made, or gone through, against the guards.
     fn reserve(&mut self, elements: usize, at: Span) -> Outcome<()>;
     /// Says by how much the number that is about to be given may be off, where that is more than rounding.
     fn estimated(&mut self, error: f64);

@@ -207,6 +207,17 @@ fn endless_recursion_is_an_error_and_deep_recursion_is_not() {
     assert_eq!(told(&evaluate(deep)), "");
 }
 
+/// On the way back from the deepest call, the other branches are not gone down again: that took all turns of the guard.
+#[test]
+fn endless_recursion_with_two_branches_is_told_at_once() {
+    for text in ["fn f(n) = f(n + 1) + f(n + 2)\nlet a = f(0)", "fn f(n) { f(n + 1)  f(n + 2) }\nf(0)"] {
+        let limits = Limits { turns: 50_000, ..Limits::default() };
+        assert_eq!(codes(&limited(text, limits).diagnostics), ["E0403"], "{text}");
+    }
+    let again = "fn f(n) = f(n)\nfn g(n) = n\nlet a = f(0)\nassert(g(2) == 3)";
+    assert_eq!(codes(&evaluate(again).diagnostics), ["E0403", "E0401"]);
+}
+
 #[test]
 fn groups_inside_groups_end_before_the_stack_does() {
     let text = "var g = sphere {}\nfor i in 0..5000 { let h = g  g = group { h } }\ng";
@@ -232,7 +243,16 @@ fn each_guard_names_itself_and_its_flag() {
         ("while true {}", "E0404", "turns"),
         ("for i in 0..100000 {}", "E0404", "turns"),
         ("fn f(n) = n < 2 ? 1 : f(n - 1) + f(n - 2)\nlet a = f(40)", "E0404", "turns"),
+        ("let a = [sum(0..90) for i in 0..50]", "E0404", "turns"),
+        (
+            "let l = [i for i in 0..90]\nlet m = [i for i in 0..90]\nlet a = [l == m for i in 0..50]",
+            "E0404",
+            "turns",
+        ),
         ("let l = [i for i in 0..500]", "E0405", "list"),
+        ("var l = [1]\nfor i in 0..60 { l = [l, l] }\nlet s = str(l)", "E0405", "list"),
+        ("var l = [1]\nfor i in 0..60 { l = [l, l] }\nlet s = \"{l}\"", "E0405", "list"),
+        ("var l = [1]\nfor i in 0..60 { l = [l, l] }\nprint(l)", "E0405", "list"),
         ("let l = linspace(0, 1, 500)", "E0405", "list"),
         ("for i in 0..900 { sphere {} }", "E0406", "memory"),
     ];
@@ -252,6 +272,25 @@ fn nested_lists_of_any_depth_are_dropped_compared_and_shown() {
     let text = "var l = []\nvar m = []\nfor i in 0..300000 { l = [l]  m = [m] }\nassert(l == m)\nprint(l)\n\
                 var f = 0\nfor i in 0..100000 { let g = f  f = () => g }";
     assert_eq!(told(&evaluate(text)), "");
+}
+
+#[test]
+fn lists_that_share_their_parts_are_compared_once() {
+    let text = "var l = [1]\nvar m = [1]\nvar n = [2]\nfor i in 0..60 { l = [l, l]  m = [m, m]  n = [n, n] }\n\
+                assert(l == m)\nassert(l != n)";
+    assert_eq!(told(&evaluate(text)), "");
+}
+
+#[test]
+fn patterns_inside_patterns_end_before_the_stack_does() {
+    let nested = |n: usize, by: &str| {
+        evaluate(&format!(
+            "var p = checker(0, 1)\nfor i in 0..{n} {{ p = {by} }}\nsphere {{ material {{ diffuse p }} }}"
+        ))
+    };
+    assert_eq!(codes(&nested(5000, "checker(p, 0)").diagnostics), ["E0003"]);
+    assert_eq!(codes(&nested(60, "gradient(p, p)").diagnostics), ["E0003"]);
+    assert_eq!(told(&nested(900, "checker(p, 0)")), "");
 }
 
 #[test]

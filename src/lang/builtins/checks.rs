@@ -2,7 +2,7 @@
 
 use crate::diag::{Code, Diagnostic};
 use crate::lang::coerce;
-use crate::lang::display::{display, interpolated};
+use crate::lang::display::{display, interpolated, pieces};
 use crate::lang::table::{Arguments, Builtin, BuiltinBody::*, Context, Outcome, Parameter};
 use crate::lang::value::Value;
 
@@ -11,7 +11,10 @@ pub static ALL: &[Builtin] = &[
     Builtin::new(
         "str",
         &[Parameter::new("value", "anything")],
-        General(|_, arguments| Ok(Value::text(&display(&arguments.values[0])))),
+        General(|ctx, arguments| {
+            check_shown(ctx, arguments)?;
+            Ok(Value::text(&display(&arguments.values[0])))
+        }),
         "A value as text: numbers so that they read back as themselves.",
         ("str(<1, 0.5>)", "\"<1, 0.5>\""),
     ),
@@ -39,13 +42,21 @@ pub static ALL: &[Builtin] = &[
     ),
 ];
 
+/// Counts what the arguments are written of, before they are written.
+fn check_shown(ctx: &mut dyn Context, arguments: &Arguments<'_>) -> Outcome<()> {
+    let total = arguments.values.iter().fold(0usize, |sum, value| sum.saturating_add(pieces(value)));
+    ctx.reserve(total, arguments.span)
+}
+
 fn print(ctx: &mut dyn Context, arguments: &Arguments<'_>) -> Outcome {
+    check_shown(ctx, arguments)?;
     let words: Vec<String> = arguments.values.iter().map(interpolated).collect();
     ctx.print(words.join(" "));
     Ok(Value::list(Vec::new()))
 }
 
 fn assert(ctx: &mut dyn Context, arguments: &Arguments<'_>) -> Outcome {
+    check_shown(ctx, arguments)?;
     let message = interpolated(&arguments.values[1]);
     match &arguments.values[0] {
         Value::Bool(true) => Ok(Value::list(Vec::new())),
@@ -66,6 +77,7 @@ fn assert(ctx: &mut dyn Context, arguments: &Arguments<'_>) -> Outcome {
 }
 
 fn error(ctx: &mut dyn Context, arguments: &Arguments<'_>) -> Outcome {
+    check_shown(ctx, arguments)?;
     let message = interpolated(&arguments.values[0]);
     Err(ctx.fail(Diagnostic::new(Code::UserError, arguments.span, message).label("the scene says so here")))
 }

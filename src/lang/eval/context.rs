@@ -58,7 +58,8 @@ impl Context for Evaluator<'_> {
     }
 
     fn reserve(&mut self, elements: usize, at: Span) -> Outcome<()> {
-        self.reserve_list(elements, at)
+        self.reserve_list(elements, at)?;
+        self.turns(elements, at)
     }
 
     fn estimated(&mut self, error: f64) {

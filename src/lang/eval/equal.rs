@@ -1,35 +1,46 @@
 //! Equality of values.
 
 use crate::lang::value::Value;
+use std::collections::HashSet;
 use std::rc::Rc;
 use std::sync::Arc;
 
 /// `a == b`: numbers, texts, vectors and lists by what they hold, built values and functions by being the same one. Values of
 /// different types differ. Lists may be nested without bound.
+///
+/// Lists may also share their parts, as in `l = [l, l]` again and again: a pair of lists is looked into once.
 pub fn equal(a: &Value, b: &Value) -> bool {
+    equal_in(a, b).0
+}
+
+/// The same, and how many pairs of values it took.
+pub fn equal_in(a: &Value, b: &Value) -> (bool, usize) {
+    let mut pairs = 0;
     let mut waiting = vec![(a.clone(), b.clone())];
+    let mut seen = HashSet::new();
     while let Some((a, b)) = waiting.pop() {
+        pairs += 1;
         match (&a, &b) {
             (Value::List(u), Value::List(v)) => {
                 if u.len() != v.len() {
-                    return false;
+                    return (false, pairs);
                 }
-                if !Rc::ptr_eq(u, v) {
+                if !Rc::ptr_eq(u, v) && seen.insert((Rc::as_ptr(u), Rc::as_ptr(v))) {
                     waiting.extend(u.iter().cloned().zip(v.iter().cloned()));
                 }
             }
             (Value::Record(u), Value::Record(v)) => {
                 let alike = |((m, _), (n, _)): (&(&str, Value), &(&str, Value))| m == n;
                 if u.parts.len() != v.parts.len() || !u.parts.iter().zip(&v.parts).all(alike) {
-                    return false;
+                    return (false, pairs);
                 }
                 waiting.extend(u.parts.iter().zip(&v.parts).map(|((_, a), (_, b))| (a.clone(), b.clone())));
             }
-            _ if !same(&a, &b) => return false,
+            _ if !same(&a, &b) => return (false, pairs),
             _ => {}
         }
     }
-    true
+    (true, pairs)
 }
 
 fn same(a: &Value, b: &Value) -> bool {

@@ -1,7 +1,7 @@
 //! Expressions to values.
 
 use super::Evaluator;
-use super::equal::equal;
+use super::equal::equal_in;
 use super::operators;
 use super::slots::{Closure, Empty, Slot};
 use crate::diag::{Code, Diagnostic, Span};
@@ -121,13 +121,19 @@ impl<'p> Evaluator<'p> {
             return Ok(Value::Bool(operators::compare(op, x, y)));
         }
         let result = match op {
-            Comparison::Equal => Ok(equal(&a, &b)),
-            Comparison::NotEqual => Ok(!equal(&a, &b)),
+            Comparison::Equal => Ok(self.equal(&a, &b, span)?),
+            Comparison::NotEqual => Ok(!self.equal(&a, &b, span)?),
             Comparison::Less | Comparison::LessEqual | Comparison::Greater | Comparison::GreaterEqual => {
                 operators::order(op, &a, &b, span)
             }
         };
         result.map(Value::Bool).map_err(|said| self.fail(*said))
+    }
+
+    fn equal(&mut self, a: &Value, b: &Value, span: Span) -> Outcome<bool> {
+        let (same, pairs) = equal_in(a, b);
+        self.turns(pairs - 1, span)?;
+        Ok(same)
     }
 
     /// An operand of logic.
@@ -244,6 +250,7 @@ impl<'p> Evaluator<'p> {
                 TextPart::Literal(literal) => text.push_str(literal),
                 TextPart::Value(e) => match self.expr(e) {
                     Ok(value) => {
+                        self.check_shown(&value, span)?;
                         text.push_str(&display::interpolated(&value));
                         self.reserve_list(text.len() / size_of::<Value>(), span)?;
                     }

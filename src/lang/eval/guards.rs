@@ -2,6 +2,7 @@
 
 use super::Evaluator;
 use crate::diag::{Code, Diagnostic, Span};
+use crate::lang::display;
 use crate::lang::limits::{Limits, exceeded};
 use crate::lang::table::{Context, Outcome, Reported};
 use crate::lang::value::{Value, memory};
@@ -11,6 +12,10 @@ use std::sync::atomic::Ordering;
 /// What is left of each guard.
 pub(super) struct Guards {
     turns: u64,
+    /// Whether the scene has been told that it took all of them.
+    out_of_turns: bool,
+    /// Whether calls are being left because they nest too deeply.
+    leaving: bool,
     /// Bytes of objects and texts made so far, estimated; lists are counted while they live.
     bytes: u64,
     /// The address below which the stack may not grow.
@@ -29,7 +34,13 @@ const STACK_PER_LEVEL: usize = 8 << 10;
 impl Guards {
     pub(super) fn new(limits: &Limits, stack: usize) -> Guards {
         let reserve = (limits.nesting.saturating_mul(STACK_PER_LEVEL)).clamp(256 << 10, stack / 2);
-        Guards { turns: limits.turns, bytes: 0, floor: here().saturating_sub(stack - reserve) }
+        Guards {
+            turns: limits.turns,
+            out_of_turns: false,
+            leaving: false,
+            bytes: 0,
+            floor: here().saturating_sub(stack - reserve),
+        }
     }
 }
 
@@ -63,16 +74,40 @@ impl Evaluator<'_> {
         }
     }
 
+    /// Counts work that is no loop of the scene's own: each element that a function of lists goes through is a turn.
+    pub(super) fn turns(&mut self, elements: usize, span: Span) -> Outcome<()> {
+        match self.guards.turns.checked_sub(elements as u64) {
+            Some(left) => {
+                self.guards.turns = left;
+                self.heed_cancel();
+                Ok(())
+            }
+            None => Err(self.too_many_turns(span)),
+        }
+    }
+
+    /// Said once: after it, everything that takes turns fails.
     #[cold]
     fn too_many_turns(&mut self, span: Span) -> Reported {
+        self.guards.turns = 0;
+        if std::mem::replace(&mut self.guards.out_of_turns, true) {
+            return Reported;
+        }
         let limit = self.run.limits.turns;
         let message = format!("loops and calls have taken {limit} turns");
         self.fail(exceeded(Code::LoopLimit, span, message, "turns", limit).label("still running here"))
     }
 
-    /// Counts a call and its depth.
+    /// Counts a call and its depth. Once calls nest too deeply, all fail until the outermost is left: a function that calls
+    /// itself twice would else go down its other branch at each level on the way back.
     #[inline]
     pub(super) fn deeper(&mut self, span: Span) -> Outcome<()> {
+        if self.guards.leaving {
+            self.guards.leaving = !self.calls.is_empty();
+            if self.guards.leaving {
+                return Err(Reported);
+            }
+        }
         if self.calls.len() >= self.run.limits.calls {
             return Err(self.too_deep(span));
         }
@@ -84,6 +119,7 @@ impl Evaluator<'_> {
 
     #[cold]
     fn too_deep(&mut self, span: Span) -> Reported {
+        self.guards.leaving = true;
         let limit = self.run.limits.calls as u64;
         let message = format!("calls are nested {limit} deep");
         self.fail(
@@ -95,6 +131,7 @@ impl Evaluator<'_> {
 
     #[cold]
     fn out_of_stack(&mut self, span: Span) -> Reported {
+        self.guards.leaving = true;
         let depth = self.calls.len();
         let message = format!("calls are nested {depth} deep, and the stack ends");
         self.fail(
@@ -132,6 +169,14 @@ impl Evaluator<'_> {
         self.fail(exceeded(Code::ListLimit, span, message, "list", limit))
     }
 
+    /// Counts what a value is written of, before it is written.
+    pub(super) fn check_shown(&mut self, value: &Value, span: Span) -> Outcome<()> {
+        let Value::List(_) = value else { return Ok(()) };
+        let pieces = display::pieces(value);
+        self.reserve_list(pieces, span)?;
+        self.turns(pieces, span)
+    }
+
     /// Refuses groups nested beyond what every later stage can follow. `span` is the block's.
     pub(super) fn check_nesting(&mut self, value: &Value, span: Span) -> Outcome<()> {
         let Value::Object(object) = value else { return Ok(()) };
@@ -165,6 +210,6 @@ impl Evaluator<'_> {
         if elements > self.run.limits.list {
             return Err(self.list_too_long(elements, span));
         }
-        self.check_memory((elements * size_of::<Value>()) as u64, span)
+        self.check_memory(elements.saturating_mul(size_of::<Value>()) as u64, span)
     }
 }

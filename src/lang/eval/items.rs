@@ -77,6 +77,9 @@ impl<'p> Evaluator<'p> {
             (_, Value::Fragment(fragment)) => fragment.properties.is_empty(),
             _ => false,
         };
+        if self.check_shown(value, written.span).is_err() {
+            return false;
+        }
         if !gives_nothing {
             self.said.push(Said::Answer(value.clone()));
             let direct = matches!(written.kind, ExprKind::Field(_) | ExprKind::CallMethod(_));

@@ -12,6 +12,9 @@ const ARGUMENT: usize = 24;
 
 impl Evaluator<'_> {
     pub(super) fn say(&mut self, mut diagnostic: Diagnostic) {
+        if self.sink.holds(&diagnostic) {
+            return;
+        }
         diagnostic.trace.extend(self.trace());
         let outermost = diagnostic.trace.last().map(|f| f.span).or(diagnostic.span);
         if let Some(span) = outermost {
