@@ -2,6 +2,7 @@
 
 use crate::stage::*;
 use glam::DVec3;
+use ogee::geometry::mesh::Mesh;
 use ogee::math::Affine;
 use ogee::render::Tracer;
 use ogee::render::camera::View;
@@ -13,6 +14,17 @@ use ogee::scene::*;
 use ogee::world::{Ray, World};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+
+/// A pyramid of four triangles with smooth normals, with every length times `s`.
+fn pyramid(s: f64) -> Mesh {
+    let positions: Vec<DVec3> =
+        [(0.0, 0.7, 0.0), (0.5, 0.0, 0.4), (0.4, 0.0, -0.5), (-0.5, 0.0, -0.3), (-0.4, 0.0, 0.5)]
+            .map(|(x, y, z)| DVec3::new(x, y, z) * s)
+            .to_vec();
+    let normals = positions.iter().map(|p| (*p / s + 0.3 * DVec3::Y).normalize()).collect();
+    let triangles = vec![[0, 1, 2], [0, 2, 3], [0, 3, 4], [0, 4, 1]];
+    Mesh { positions, normals, triangles, ..Mesh::default() }
+}
 
 /// A bit of everything, with every length times `s`.
 fn still_life(s: f64) -> Vec<Node> {
@@ -61,6 +73,20 @@ fn still_life(s: f64) -> Vec<Node> {
             })),
             &shiny,
         ),
+        object(
+            Shape::Triangle(Box::new(Triangle {
+                vertices: [v(-2.6, 0.1, 1.9), v(-1.4, 0.2, 2.1), v(-2.1, 1.1, 1.4)],
+                normals: Some([DVec3::Z, DVec3::new(0.6, 0.0, 0.8), DVec3::new(0.0, 0.6, 0.8)]),
+                uvs: None,
+            })),
+            &shiny,
+        ),
+        placed(mesh(pyramid(s)), &diffuse(0.5), Some(Affine::translate(v(-0.6, 0.0, 2.2)))),
+        placed(
+            mesh(pyramid(s)),
+            &tinted,
+            Some(Affine::rotate(DVec3::Y, 40.0).then(&Affine::translate(v(2.0, 0.1, 1.6)))),
+        ),
         point(v(3.0, 5.0, 3.0), 40.0 * s * s),
         light(spot),
         sun(DVec3::new(-0.3, -1.0, 0.2), 0.4),
@@ -70,7 +96,8 @@ fn still_life(s: f64) -> Vec<Node> {
 }
 
 fn still_camera(s: f64) -> Camera {
-    camera(DVec3::new(0.0, 1.8, 5.0) * s, DVec3::new(0.0, 0.8, 0.0) * s, 45.0)
+    let pinhole = camera(DVec3::new(0.0, 1.8, 5.0) * s, DVec3::new(0.0, 0.8, 0.0) * s, 45.0);
+    Camera { aperture: 0.02 * s, focus: Some(4.5 * s), ..pinhole }
 }
 
 fn bits(film: &Film) -> Vec<[u64; 3]> {
@@ -91,6 +118,33 @@ fn a_scene_of_any_scale_gives_the_same_bits() {
         let scaled = still(ogee::math::elementary::powi(2.0, power));
         let differing = bits(&expected).iter().zip(&bits(&scaled)).filter(|(a, b)| a != b).count();
         assert_eq!(differing, 0, "2^{power}");
+    }
+}
+
+#[test]
+fn normals_that_cancel_leave_a_surface_as_bright_as_it_is() {
+    let corners = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)].map(|(x, y)| DVec3::new(x, y, 0.0));
+    for n in [DVec3::X, DVec3::Z, DVec3::new(0.6, 0.0, 0.8)] {
+        // Along the middle column the normals of the left and the right cancel to nothing.
+        let quad = Mesh {
+            positions: corners.to_vec(),
+            normals: vec![n, -n, -n, n],
+            triangles: vec![[0, 1, 2], [0, 2, 3]],
+            ..Mesh::default()
+        };
+        let triangle =
+            Triangle { vertices: [corners[0], corners[1], corners[3]], normals: Some([n, -n, n]), uvs: None };
+        for shape in [mesh(quad), Shape::Triangle(Box::new(triangle))] {
+            let world = world(vec![object(shape, &diffuse(0.5)), sun(-DVec3::Z, std::f64::consts::PI)]);
+            let mut camera = camera(3.0 * DVec3::Z, DVec3::ZERO, 36.0);
+            camera.projection = Projection::Orthographic;
+            let film = picture(&world, &camera, &settings([33, 33]));
+            assert_eq!(film.report.non_finite, 0);
+            let lowest = film.pixel(16, 31).x;
+            assert!(lowest > 0.2, "{n}: {lowest} where they cancel");
+            assert!(film.pixels.iter().all(|p| p.x >= 0.0 && p.x <= 0.5 + 1e-12), "{n}");
+            assert!(film.pixels.iter().filter(|p| p.x > 0.2).count() > 400, "{n}: black on a lit side");
+        }
     }
 }
 

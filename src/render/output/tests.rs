@@ -80,6 +80,18 @@ fn exr_keeps_every_bit_of_f32_and_says_how_it_was_made() {
 }
 
 #[test]
+fn an_exr_of_a_crop_knows_its_place_in_the_whole() {
+    use exr::prelude::*;
+    let film = Film::new([20, 15], crate::render::settings::Crop { x: 11, y: 7, width: 4, height: 3 });
+    let encoded = encode(&film, Format::Exr, &Development::default(), &metadata()).unwrap();
+    let meta = MetaData::read_from_buffered(Cursor::new(&encoded), false).unwrap();
+    let header = &meta.headers[0];
+    assert_eq!(header.own_attributes.layer_position, Vec2(11, 7));
+    assert_eq!(header.layer_size, Vec2(4, 3));
+    assert_eq!(header.shared_attributes.display_window, IntegerBounds::new((0, 0), (20, 15)));
+}
+
+#[test]
 fn hdr_keeps_radiance_to_its_eight_bits() {
     let image = image::load_from_memory(&bytes(Format::Hdr)).unwrap().to_rgb32f();
     for (p, c) in image.pixels().zip(&film().pixels) {

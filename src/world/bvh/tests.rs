@@ -1,5 +1,6 @@
 use super::{Tree, clip};
 use crate::math::Aabb;
+use crate::math::exact::Double;
 use glam::DVec3;
 
 /// Numbers in 0 … 1 by splitmix64.
@@ -59,6 +60,55 @@ fn every_box_that_a_ray_meets_is_offered() {
             }
         }
     }
+}
+
+/// Whether a line meets a box, in twice the working precision; none where that cannot tell.
+fn meets_exactly(b: &Aabb, origin: DVec3, d: DVec3) -> Option<bool> {
+    // In units of 1/(d.x d.y d.z): where the line enters and leaves each slab, over the other two components.
+    let bound = |a: usize, side: f64| {
+        let others = Double::product(d[(a + 1) % 3].abs(), d[(a + 2) % 3].abs());
+        Double::difference(side, origin[a]) * others * Double::new(d[a].signum())
+    };
+    let mut clear = true;
+    for a in 0..3 {
+        for c in 0..3 {
+            let near = if d[a] > 0.0 { b.min[a] } else { b.max[a] };
+            let far_c = if d[c] > 0.0 { b.max[c] } else { b.min[c] };
+            let room = (bound(c, far_c) - bound(a, near)).value();
+            let size = bound(c, far_c).value().abs() + bound(a, near).value().abs();
+            if room < -1e-25 * size {
+                return Some(false);
+            }
+            clear &= room > 1e-25 * size || a == c;
+        }
+    }
+    clear.then_some(true)
+}
+
+#[test]
+fn no_ray_at_the_edge_of_a_box_is_lost_to_rounding() {
+    let mut state = 12;
+    let (mut met, mut lost) = (0, 0);
+    for offset in [DVec3::ZERO, DVec3::new(148_376.0, 1234.0, -223_423.0)] {
+        for b in boxes(200, offset, 14) {
+            let tree = Tree::build(1, |_| b);
+            for i in 0..100 {
+                // A point of an edge: two coordinates at a side, one between.
+                let corner = b.corners()[i % 8];
+                let mut aim = corner;
+                aim[i % 3] = b.min[i % 3] + (b.max[i % 3] - b.min[i % 3]) * random(&mut state);
+                let origin = offset + vector(&mut state) * 20.0;
+                let d = (aim - origin).normalize();
+                if meets_exactly(&b, origin, d) == Some(true) {
+                    met += 1;
+                    lost += u32::from(clip(&b, origin, d, f64::MAX).is_none());
+                    lost += u32::from(offered(&tree, origin, d, f64::MAX).is_empty());
+                }
+            }
+        }
+    }
+    assert!(met > 10_000, "{met} rays meet their box");
+    assert_eq!(lost, 0, "of {met}");
 }
 
 #[test]

@@ -2,6 +2,7 @@
 
 use super::{Random, jumble, node, object, placed, ray, sphere, world_of};
 use glam::DVec3;
+use ogee::geometry::mesh::Mesh;
 use ogee::math::Affine;
 use ogee::scene::{Accelerator, Cone, Disc, Node, Object, Rect, Shape, Torus, Triangle};
 use ogee::world::{RayKind, World};
@@ -212,6 +213,11 @@ fn a_scene_scaled_by_a_power_of_two_is_met_at_the_same_bits() {
     }
 }
 
+fn scaled_ball(factor: f64) -> Mesh {
+    let ball = super::bumpy_ball(DVec3::new(0.1, -0.2, 0.3), 3, 5);
+    Mesh { positions: ball.positions.iter().map(|p| *p * factor).collect(), ..ball }
+}
+
 /// The same without a transform: the shapes' own lengths are scaled.
 #[test]
 fn shapes_scaled_by_a_power_of_two_are_met_at_the_same_bits() {
@@ -229,6 +235,27 @@ fn shapes_scaled_by_a_power_of_two_are_met_at_the_same_bits() {
                 to: DVec3::new(1.0, 2.0, 0.5) * f,
                 radii: [0.7 * f, 0.2 * f],
             })),
+            Shape::Box(Box::new((DVec3::new(-1.0, -0.5, 0.1) * f, DVec3::new(0.7, 0.9, 1.3) * f))),
+            Shape::Disc(Box::new(Disc {
+                center: DVec3::new(0.1, 0.2, 0.3) * f,
+                normal: DVec3::new(0.6, 0.0, 0.8),
+                radius: 2.0 * f,
+            })),
+            Shape::Rect(Box::new(Rect {
+                center: DVec3::new(0.1, 0.2, 0.3) * f,
+                a: DVec3::new(2.0, 0.3, 0.1) * f,
+                b: DVec3::new(-0.2, 1.7, 0.4) * f,
+            })),
+            Shape::Triangle(Box::new(Triangle {
+                vertices: [
+                    DVec3::new(-3.0, -2.0, 0.1) * f,
+                    DVec3::new(2.0, -1.0, 0.7) * f,
+                    DVec3::new(0.3, 3.0, -0.5) * f,
+                ],
+                normals: Some([DVec3::Z, DVec3::new(0.6, 0.0, 0.8), DVec3::new(0.0, 0.6, 0.8)]),
+                uvs: None,
+            })),
+            super::mesh(scaled_ball(f)),
         ]
     };
     for e in [20, -20, 40, -40] {
