@@ -17,9 +17,9 @@ use crate::math::Aabb;
 use frame::Frame;
 
 /// Children of a node.
-const WIDTH: usize = 4;
+const WIDTH: usize = 8;
 
-/// Up to four children, as arrays over the children so that one instruction tests all of them. Two cache lines.
+/// Up to eight children, as arrays over the children so that one instruction tests all of them. Four cache lines.
 #[derive(Clone, Copy, Debug)]
 #[repr(align(64))]
 struct Node {

@@ -1,5 +1,7 @@
 //! The one traversal: nearest boxes first, for closest hits and for any hit.
 
+mod wide;
+
 use super::frame::{round_down, round_up};
 use super::{Node, Tree, WIDTH};
 use crate::math::Aabb;
@@ -27,7 +29,7 @@ const MARGIN: f64 = gamma(16);
 const FRAME_SIZE: f64 = 2.0;
 
 /// Entries of the stack that need no allocation; deeper ones spill.
-const STACK: usize = 64;
+const STACK: usize = 32;
 
 /// Where a ray enters and leaves a box, at or after 0 and at or before `t_max`; none where it misses. Conservative: far sides are
 /// widened. All comparisons let a NaN (0·∞, a ray in the plane of a side) pass.
@@ -102,31 +104,16 @@ impl Narrow {
     }
 
     /// A float at or beyond the distance t in the tree's frame.
+    #[inline(always)]
     fn limit(&self, t: f64) -> f32 {
         round_up(((t - self.start) * SLACK + t * MARGIN) * self.per_t * f64::from(WIDEN))
     }
-
-    /// Which children the ray meets before `limit`, as bits, and where it enters each.
-    #[inline(always)]
-    fn meets(&self, node: &Node, limit: f32) -> (u32, [f32; WIDTH]) {
-        let (mut near, mut far) = ([0.0f32; WIDTH], [limit; WIDTH]);
-        for a in 0..3 {
-            let (enter, leave) = (&node.rows[self.near_row[a] & 7], &node.rows[self.far_row[a] & 7]);
-            for i in 0..WIDTH {
-                let x = (enter[i] - self.near_origin[a]) * self.near_inverse[a];
-                near[i] = if x > near[i] { x } else { near[i] };
-                let y = (leave[i] - self.far_origin[a]) * self.far_inverse[a];
-                far[i] = if y < far[i] { y } else { far[i] };
-            }
-        }
-        let mut mask = 0;
-        for i in 0..WIDTH {
-            mask |= u32::from(near[i] <= far[i]) << i;
-        }
-        (mask, near)
-    }
 }
 
+/// Which children of a node a ray meets, as bits, and where it enters each.
+type Met = (u32, [f32; WIDTH]);
+
+/// A child that is still to be visited.
 #[derive(Clone, Copy, Default)]
 struct Entry {
     near: f32,
@@ -142,6 +129,7 @@ struct Stack {
 }
 
 impl Stack {
+    #[inline(always)]
     fn new() -> Stack {
         Stack { entries: [Entry::default(); STACK], len: 0, spilled: Vec::new() }
     }
@@ -166,6 +154,40 @@ impl Stack {
         self.len = self.len.checked_sub(1)?;
         Some(self.entries[self.len])
     }
+
+    /// The last entry that begins before the limit.
+    #[inline(always)]
+    fn next(&mut self, limit: f32) -> Option<Entry> {
+        loop {
+            let entry = self.pop()?;
+            if entry.near <= limit {
+                return Some(entry);
+            }
+        }
+    }
+
+    /// Pushes the children that the ray meets but the nearest, farther ones first; gives the nearest.
+    #[inline(always)]
+    fn enter(&mut self, node: &Node, (mut mask, near): Met) -> Option<Entry> {
+        if mask == 0 {
+            return None;
+        }
+        let entry = |i: usize| Entry { near: near[i], child: node.child(i), count: node.count(i) };
+        let mut nearest = entry(mask.trailing_zeros() as usize & (WIDTH - 1));
+        mask &= mask - 1;
+        let bottom = self.len;
+        while mask != 0 {
+            let mut other = entry(mask.trailing_zeros() as usize & (WIDTH - 1));
+            mask &= mask - 1;
+            if other.near < nearest.near {
+                std::mem::swap(&mut other, &mut nearest);
+            }
+            self.push(other);
+        }
+        // Where some spilled, their order is lost, which costs time only.
+        sort_far_first(&mut self.entries[bottom..self.len]);
+        Some(nearest)
+    }
 }
 
 impl Tree {
@@ -185,56 +207,49 @@ impl Tree {
         if self.nodes.is_empty() || t_max < 0.0 {
             return;
         }
-        let Some((start, _)) = clip(&self.bounds, origin, direction, t_max) else { return };
-        let ray = Narrow::new(self, origin, direction, start);
-        let mut limit = ray.limit(t_max);
-        let mut stack = Stack::new();
-        let mut current = Entry::default();
-        loop {
-            if current.count > 0 {
-                let first = current.child as usize;
-                let found = leaf(first..first + current.count as usize, t_max);
-                if found < 0.0 {
-                    return;
-                }
-                if found < t_max {
-                    t_max = found;
-                    limit = ray.limit(t_max);
-                }
-            } else {
-                push_children(&self.nodes[current.child as usize], &ray, limit, &mut stack);
-            }
-            loop {
-                match stack.pop() {
-                    None => return,
-                    Some(entry) if entry.near <= limit => {
-                        current = entry;
-                        break;
-                    }
-                    Some(_) => {}
-                }
-            }
+        if let Some((start, _)) = clip(&self.bounds, origin, direction, t_max) {
+            let ray = Narrow::new(self, origin, direction, start);
+            wide::walk(&self.nodes, &ray, t_max, leaf);
         }
     }
 }
 
-/// Pushes the children that the ray meets, the nearest last.
+/// The traversal from the first node down. `meets` tests a node's children against a limit.
 #[inline(always)]
-fn push_children(node: &Node, ray: &Narrow, limit: f32, stack: &mut Stack) {
-    let (mut mask, near) = ray.meets(node, limit);
-    let bottom = stack.len;
-    let spilled = !stack.spilled.is_empty();
-    while mask != 0 {
-        let i = mask.trailing_zeros() as usize;
-        mask &= mask - 1;
-        stack.push(Entry { near: near[i], child: node.child(i), count: node.count(i) });
-    }
-    if !spilled && stack.spilled.is_empty() {
-        sort_far_first(&mut stack.entries[bottom..stack.len]);
+fn walk(
+    nodes: &[Node],
+    ray: &Narrow,
+    mut t_max: f64,
+    meets: impl Fn(&Node, f32) -> Met,
+    mut leaf: impl FnMut(Range<usize>, f64) -> f64,
+) {
+    let mut limit = ray.limit(t_max);
+    let mut stack = Stack::new();
+    let mut current = Entry::default();
+    loop {
+        let nearest = if current.count == 0 {
+            let node = &nodes[current.child as usize];
+            stack.enter(node, meets(node, limit))
+        } else {
+            let first = current.child as usize;
+            let found = leaf(first..first + current.count as usize, t_max);
+            if found < 0.0 {
+                return;
+            }
+            if found < t_max {
+                t_max = found;
+                limit = ray.limit(t_max);
+            }
+            None
+        };
+        match nearest.or_else(|| stack.next(limit)) {
+            Some(next) => current = next,
+            None => return,
+        }
     }
 }
 
-/// Insertion sort of at most four; ties keep the first child on top.
+/// Insertion sort of a few; ties keep the first child on top.
 #[inline(always)]
 fn sort_far_first(entries: &mut [Entry]) {
     for i in 1..entries.len() {

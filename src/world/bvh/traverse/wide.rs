@@ -1,0 +1,128 @@
+//! The test of a node's children, and the traversal around it, compiled for what the processor has: only how many children one
+//! instruction tests differs, not one operation or its order, so that every picture is the same on all of them. Knows nothing of
+//! what is traversed. The one room of the tree with unsafe code: there is no other way to such instructions.
+
+use super::{Met, Narrow, Node, WIDTH};
+use std::ops::Range;
+
+/// [`super::walk`] with the widest instructions that there are.
+#[inline(always)]
+pub(super) fn walk(nodes: &[Node], ray: &Narrow, t_max: f64, leaf: impl FnMut(Range<usize>, f64) -> f64) {
+    #[cfg(target_arch = "x86_64")]
+    if std::arch::is_x86_feature_detected!("avx2") {
+        // SAFETY: the processor has just been found to have what the function is compiled for.
+        #[allow(unsafe_code, reason = "code for instructions that not every processor has")]
+        return unsafe { x86::walk_avx2(nodes, ray, t_max, leaf) };
+    }
+    super::walk(nodes, ray, t_max, |node, limit| meets(ray, node, limit), leaf);
+}
+
+/// The test by plain operations: the definition of what the others do.
+#[inline(always)]
+fn meets(ray: &Narrow, node: &Node, limit: f32) -> Met {
+    let (mut near, mut far) = ([0.0f32; WIDTH], [limit; WIDTH]);
+    for a in 0..3 {
+        let (enter, leave) = (&node.rows[ray.near_row[a] & 7], &node.rows[ray.far_row[a] & 7]);
+        for i in 0..WIDTH {
+            let x = (enter[i] - ray.near_origin[a]) * ray.near_inverse[a];
+            near[i] = if x > near[i] { x } else { near[i] };
+            let y = (leave[i] - ray.far_origin[a]) * ray.far_inverse[a];
+            far[i] = if y < far[i] { y } else { far[i] };
+        }
+    }
+    let mask = (0..WIDTH).fold(0, |mask, i| mask | u32::from(near[i] <= far[i]) << i);
+    (mask, near)
+}
+
+#[cfg(target_arch = "x86_64")]
+mod x86 {
+    use super::{Met, Narrow, Node, Range, WIDTH};
+    use std::arch::x86_64::*;
+
+    #[target_feature(enable = "avx2")]
+    pub(super) fn walk_avx2(
+        nodes: &[Node],
+        ray: &Narrow,
+        t_max: f64,
+        leaf: impl FnMut(Range<usize>, f64) -> f64,
+    ) {
+        super::super::walk(nodes, ray, t_max, |node, limit| meets_avx2(ray, node, limit), leaf);
+    }
+
+    /// [`super::meets`], eight children at once. The larger and the smaller of two give their second operand where one is NaN, as
+    /// the comparisons there do.
+    #[target_feature(enable = "avx2")]
+    #[inline]
+    fn meets_avx2(ray: &Narrow, node: &Node, limit: f32) -> Met {
+        let (mut near, mut far) = (_mm256_setzero_ps(), _mm256_set1_ps(limit));
+        for a in 0..3 {
+            let (enter, leave) =
+                (load(&node.rows[ray.near_row[a] & 7]), load(&node.rows[ray.far_row[a] & 7]));
+            let x = _mm256_sub_ps(enter, _mm256_set1_ps(ray.near_origin[a]));
+            near = _mm256_max_ps(_mm256_mul_ps(x, _mm256_set1_ps(ray.near_inverse[a])), near);
+            let y = _mm256_sub_ps(leave, _mm256_set1_ps(ray.far_origin[a]));
+            far = _mm256_min_ps(_mm256_mul_ps(y, _mm256_set1_ps(ray.far_inverse[a])), far);
+        }
+        let mask = _mm256_movemask_ps(_mm256_cmp_ps::<_CMP_LE_OQ>(near, far));
+        (mask as u32, store(near))
+    }
+
+    #[target_feature(enable = "avx2")]
+    #[inline]
+    #[allow(unsafe_code, reason = "a vector register has no safe way from memory")]
+    fn load(lanes: &[f32; WIDTH]) -> __m256 {
+        // SAFETY: eight floats are read from an array of eight; no alignment is asked for.
+        unsafe { _mm256_loadu_ps(lanes.as_ptr()) }
+    }
+
+    #[target_feature(enable = "avx2")]
+    #[inline]
+    #[allow(unsafe_code, reason = "a vector register has no safe way to memory")]
+    fn store(vector: __m256) -> [f32; WIDTH] {
+        let mut lanes = [0.0; WIDTH];
+        // SAFETY: eight floats are written to an array of eight; no alignment is asked for.
+        unsafe { _mm256_storeu_ps(lanes.as_mut_ptr(), vector) };
+        lanes
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{Narrow, clip};
+    use super::*;
+    use crate::math::Aabb;
+    use crate::world::bvh::Tree;
+    use glam::DVec3;
+
+    /// What is offered, in order, by a traversal that never finds anything.
+    fn offered(walk: impl FnOnce(&mut dyn FnMut(Range<usize>, f64) -> f64)) -> Vec<Range<usize>> {
+        let mut all = Vec::new();
+        walk(&mut |range, t_max| {
+            all.push(range);
+            t_max
+        });
+        all
+    }
+
+    #[test]
+    fn the_widest_instructions_take_the_same_way_as_plain_operations() {
+        let part = |i: usize, c: f64| (i as f64 * c).fract() * 20.0 - 10.0;
+        let corner = |i| DVec3::new(part(i, 0.754_877_666), part(i, 0.569_840_291), part(i, 0.430_159_709));
+        let boxes: Vec<Aabb> = (0..5000).map(|i| Aabb::of([corner(i), corner(i) + 0.4])).collect();
+        let tree = Tree::build(boxes.len(), |i| boxes[i]);
+        let mut n_offered = 0;
+        for i in 0..200 {
+            let origin = corner(i + 7) * 3.0;
+            // Some along an axis, where planes meet 0·∞.
+            let direction = if i % 5 == 0 { DVec3::AXES[i % 3] } else { (corner(i) - origin).normalize() };
+            let Some((start, _)) = clip(&tree.bounds, origin, direction, 1e3) else { continue };
+            let ray = Narrow::new(&tree, origin, direction, start);
+            let plain = offered(|leaf| {
+                super::super::walk(&tree.nodes, &ray, 1e3, |node, limit| meets(&ray, node, limit), leaf);
+            });
+            n_offered += plain.len();
+            assert_eq!(offered(|leaf| walk(&tree.nodes, &ray, 1e3, leaf)), plain, "ray {i}");
+        }
+        assert!(n_offered > 1000, "{n_offered}");
+    }
+}
