@@ -113,14 +113,32 @@ impl std::ops::Mul for Double {
     }
 }
 
-/// a·b + c·d + e·f over pairs, in twice the working precision, rounded once.
+/// a·b + c·d + e·f over pairs, as if in twice the working precision, rounded once (Ogita, Rump & Oishi, `Dot2`): the errors
+/// of products and sums are added beside the sum, so that only one addition waits for the one before.
+#[inline]
 pub fn sum_of_products<const N: usize>(pairs: [(f64, f64); N]) -> f64 {
-    pairs.iter().fold(Double::new(0.0), |sum, &(a, b)| sum + Double::product(a, b)).value()
+    let (mut sum, mut error) = (0.0, 0.0);
+    for (a, b) in pairs {
+        let (product, of_product) = two_product(a, b);
+        let (next, of_sum) = two_sum(sum, product);
+        sum = next;
+        error += of_product + of_sum;
+    }
+    sum + error
 }
 
 /// a·b in twice the working precision, rounded once.
+#[inline]
 pub fn dot(a: DVec3, b: DVec3) -> f64 {
     sum_of_products([(a.x, b.x), (a.y, b.y), (a.z, b.z)])
+}
+
+/// a % b, in the same bits. By a power of two, as most divisors in a loop are, without a loop over the bits of the quotient:
+/// dividing by it and taking the whole quotients away rounds nowhere.
+pub fn remainder(a: f64, b: f64) -> f64 {
+    let quotient = a / b;
+    let is_power = b.is_normal() && power_of_two(exponent(b)) == b.abs();
+    if is_power && quotient.is_finite() { (a - quotient.trunc() * b).copysign(a) } else { a % b }
 }
 
 /// ab − cd whose sign is exact and whose value is right to an ulp or two: zero only where the products are equal.
@@ -158,6 +176,32 @@ mod tests {
     #[test]
     fn a_dot_product_survives_cancellation() {
         assert_eq!(dot(DVec3::new(1e17, 1.0, -1e17), DVec3::ONE), 1.0);
+    }
+
+    #[test]
+    fn remainders_have_the_bits_of_the_operator() {
+        let some = [
+            0.0,
+            1e-310,
+            0.1,
+            0.5,
+            1.0,
+            1.5,
+            2.0,
+            3.0,
+            754_877.7,
+            1e17,
+            2f64.powi(-1022),
+            f64::MAX,
+            f64::INFINITY,
+            f64::NAN,
+        ];
+        for a in some.into_iter().flat_map(|a| [a, -a]) {
+            for b in some.into_iter().flat_map(|b| [b, -b]) {
+                let (fast, slow) = (remainder(a, b), a % b);
+                assert!(fast.to_bits() == slow.to_bits() || fast.is_nan() && slow.is_nan(), "{a} % {b}");
+            }
+        }
     }
 
     #[test]

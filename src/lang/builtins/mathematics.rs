@@ -2,6 +2,7 @@
 
 use crate::lang::table::{Builtin, BuiltinBody::*, Parameter};
 use crate::math::elementary as m;
+use crate::math::exact::remainder;
 
 const X: &[Parameter] = &[Parameter::new("x", "a number or vector")];
 const ANGLE: &[Parameter] = &[Parameter::new("angle", "a number or vector")];
@@ -147,6 +148,6 @@ fn smoothstep(edge0: f64, edge1: f64, x: f64) -> f64 {
 
 /// NaN for b = 0.
 fn floored_mod(a: f64, b: f64) -> f64 {
-    let r = a % b;
+    let r = remainder(a, b);
     if r != 0.0 && (r < 0.0) != (b < 0.0) { r + b } else { r }
 }

@@ -5,7 +5,7 @@ use crate::lang::coerce::shown;
 use crate::lang::display::abbreviated;
 use crate::lang::resolve::program::{Arithmetic, Comparison};
 use crate::lang::value::Value;
-use crate::math::elementary;
+use crate::math::{elementary, exact};
 use glam::{DVec2, DVec3, DVec4};
 use std::rc::Rc;
 
@@ -23,7 +23,7 @@ pub fn number(op: Arithmetic, a: f64, b: f64) -> f64 {
         Arithmetic::Subtract => a - b,
         Arithmetic::Multiply => a * b,
         Arithmetic::Divide => a / b,
-        Arithmetic::Remainder => a % b,
+        Arithmetic::Remainder => exact::remainder(a, b),
         Arithmetic::Power => power(a, b),
     }
 }
