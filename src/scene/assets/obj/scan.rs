@@ -1,5 +1,9 @@
-//! One pass over the text of an OBJ file before tobj reads its numbers: cuts away what tobj would refuse or misread, checks
-//! every face, and notes what tobj does not keep: smoothing groups, corners without texture coordinates, places.
+//! One pass over the text of an OBJ file: reads its numbers, checks every face, and notes smoothing groups, materials and the
+//! places of faults.
+
+use super::numbers::{NONE, Numbers, read_number};
+use glam::{DVec2, DVec3};
+use std::ops::Range;
 
 /// What a face stands under: faces in a row that agree are one run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -20,11 +24,11 @@ pub(super) const NO_MATERIAL: u32 = u32::MAX;
 /// What the pass finds.
 #[derive(Debug, Default)]
 pub(super) struct Scan<'t> {
-    /// The lines for tobj: `v`, `vt`, `vn` and `f` alone, each well formed but for the digits of its numbers.
-    pub pieces: Vec<Piece>,
+    /// What `v`, `vt`, `vn` and `f` give.
+    pub numbers: Numbers,
     /// (First face, its state), in order.
     pub runs: Vec<(usize, FaceState)>,
-    /// Faces given to tobj.
+    /// Faces of three corners or more.
     pub n_faces: usize,
     /// Names after `usemtl`, each once.
     pub material_names: Vec<&'t str>,
@@ -38,15 +42,6 @@ pub(super) struct Scan<'t> {
     pub free_forms: usize,
     /// Corners that refer to texture coordinates or normals of which the file has none.
     pub dangling: bool,
-}
-
-/// A stretch of lines for tobj, without the last line's end.
-#[derive(Debug, PartialEq, Eq)]
-pub(super) enum Piece {
-    /// Bytes of the file.
-    Range(usize, usize),
-    /// A line mended.
-    Made(String),
 }
 
 /// Where and why a file cannot be used.
@@ -82,6 +77,7 @@ pub(super) fn scan(text: &str) -> Result<Scan<'_>, Fault> {
     // An index past the end can only be told at the end, but may stand before the fault that stopped the pass.
     let past_the_end = pass.check_indices();
     let first = [passed, past_the_end].into_iter().filter_map(Result::err).min_by_key(|fault| fault.offset);
+    pass.scan.numbers.finish();
     first.map_or(Ok(pass.scan), Err)
 }
 
@@ -107,7 +103,7 @@ fn lines(text: &str) -> impl Iterator<Item = (usize, usize)> {
         }
         let start = at;
         loop {
-            let end = bytes[at..].iter().position(|&b| b == b'\n').map_or(bytes.len(), |n| at + n);
+            let end = memchr::memchr(b'\n', &bytes[at..]).map_or(bytes.len(), |n| at + n);
             at = end + 1;
             let end = if end > start && bytes[end - 1] == b'\r' { end - 1 } else { end };
             if end == start || bytes[end - 1] != b'\\' || at >= bytes.len() {
@@ -122,7 +118,7 @@ impl<'t> Pass<'t> {
         let line = &self.text.as_bytes()[start..end];
         let indent = line.iter().position(|b| !is_blank(*b)).unwrap_or(line.len());
         let (start, line) = (start + indent, &line[indent..]);
-        if line.contains(&b'\n') {
+        if memchr::memchr(b'\n', line).is_some() {
             return self.joined_line(start, end);
         }
         match line {
@@ -144,7 +140,7 @@ impl<'t> Pass<'t> {
         let joined = self.text[start..end].replace("\\\r\n", " ").replace("\\\n", " ");
         let mut apart = Pass {
             text: &joined,
-            scan: Scan::default(),
+            scan: Scan { numbers: std::mem::take(&mut self.scan.numbers), ..Scan::default() },
             state: self.state,
             counts: self.counts,
             greatest: self.greatest,
@@ -159,92 +155,91 @@ impl<'t> Pass<'t> {
         self.counts = counts;
         self.scan.short_faces += found.short_faces;
         self.scan.dangling |= found.dangling;
+        self.scan.numbers = found.numbers;
         if found.n_faces > 0 {
             self.state = FaceState { material: self.state.material, ..state };
             self.count_face();
         }
-        let made = found.pieces.into_iter().map(|piece| match piece {
-            Piece::Range(a, b) => Piece::Made(joined[a..b].to_owned()),
-            made => made,
-        });
-        self.scan.pieces.extend(made);
         Ok(())
     }
 
     /// Three numbers; what follows (a weight, colours) says nothing about a polygon's place.
     fn vertex(&mut self, start: usize, end: usize) -> Result<(), Fault> {
         self.counts[0] += 1;
-        let cut = self.end_of_fields(start, end, 3, "a vertex needs three numbers")?;
-        self.give(start, cut);
+        let position = self.three(start, start + 1, end, "a vertex needs three numbers")?;
+        self.scan.numbers.positions.push(position);
         Ok(())
     }
 
     fn normal(&mut self, start: usize, end: usize) -> Result<(), Fault> {
         self.counts[2] += 1;
-        let cut = self.end_of_fields(start, end, 3, "a normal needs three numbers")?;
-        self.give(start, cut);
+        let normal = self.three(start, start + 2, end, "a normal needs three numbers")?;
+        self.scan.numbers.normals.push(normal);
         Ok(())
     }
 
     /// One or two numbers; a third is depth in a solid texture.
     fn texture_coordinate(&mut self, start: usize, end: usize) -> Result<(), Fault> {
         self.counts[1] += 1;
-        match self.end_of_fields(start, end, 2, "") {
-            Ok(cut) => self.give(start, cut),
-            Err(_) => {
-                let cut = self.end_of_fields(start, end, 1, "a texture coordinate needs a number")?;
-                self.scan.pieces.push(Piece::Made(format!("{} 0", &self.text[start..cut])));
-            }
+        let (uv, n) = self.fields::<2>(start + 2, end);
+        if n == 0 {
+            return Err(Fault { offset: start, message: "a texture coordinate needs a number".to_owned() });
         }
+        self.scan.numbers.uvs.push(DVec2::from_array(uv));
         Ok(())
     }
 
-    /// Where the last of `n` fields after the keyword ends.
-    fn end_of_fields(&self, start: usize, end: usize, n: usize, wanted: &str) -> Result<usize, Fault> {
-        let line = &self.text.as_bytes()[start..end];
-        let mut at = 0;
-        for _ in 0..=n {
-            at += line[at..].iter().position(|b| !is_blank(*b)).unwrap_or(line.len() - at);
-            if at == line.len() || line[at] == b'#' {
-                return Err(Fault { offset: start, message: wanted.to_owned() });
-            }
-            at += line[at..].iter().position(|b| is_blank(*b)).unwrap_or(line.len() - at);
+    fn three(&mut self, line: usize, from: usize, end: usize, wanted: &str) -> Result<DVec3, Fault> {
+        match self.fields::<3>(from, end) {
+            (fields, 3) => Ok(DVec3::from_array(fields)),
+            _ => Err(Fault { offset: line, message: wanted.to_owned() }),
         }
-        Ok(start + at)
     }
 
-    /// Gives bytes to tobj, in one piece with the line before where they follow on each other.
-    fn give(&mut self, start: usize, end: usize) {
-        match self.scan.pieces.last_mut() {
-            Some(Piece::Range(_, last)) if only_blanks(&self.text.as_bytes()[*last..start]) => *last = end,
-            _ => self.scan.pieces.push(Piece::Range(start, end)),
+    /// Up to `N` numbers, and how many there are; 0 in place of those that are missing. What is no number is NaN, and that is
+    /// remembered.
+    fn fields<const N: usize>(&mut self, from: usize, end: usize) -> ([f64; N], usize) {
+        let (mut at, mut fields) = (from, [0.0; N]);
+        for (n, field) in fields.iter_mut().enumerate() {
+            at = self.skip_blanks(at, end);
+            if at == end || self.text.as_bytes()[at] == b'#' {
+                return (fields, n);
+            }
+            *field = read_number(self.text, &mut at, end).unwrap_or_else(|| {
+                self.scan.numbers.malformed = true;
+                f64::NAN
+            });
         }
+        (fields, N)
+    }
+
+    fn skip_blanks(&self, at: usize, end: usize) -> usize {
+        let rest = &self.text.as_bytes()[at..end];
+        rest.iter().position(|b| !is_blank(*b)).map_or(end, |n| at + n)
     }
 
     fn face(&mut self, start: usize, end: usize) -> Result<(), Fault> {
-        let bytes = &self.text.as_bytes()[..end];
-        let (mut at, mut corners, mut cut) = (start + 1, 0, end);
+        let first = self.scan.numbers.position_of.len();
         let (mut has_uvs, mut has_normals) = (true, true);
+        let mut at = start + 1;
         loop {
-            while at < end && is_blank(bytes[at]) {
-                at += 1;
-            }
-            if at == end || bytes[at] == b'#' {
-                cut = cut.min(at);
+            at = self.skip_blanks(at, end);
+            if at == end || self.text.as_bytes()[at] == b'#' {
                 break;
             }
-            let given = self.corner(&mut at, end)?;
-            has_uvs &= given[1];
-            has_normals &= given[2];
-            corners += 1;
+            let corner = self.corner(&mut at, end)?;
+            has_uvs &= corner[1].is_some();
+            has_normals &= corner[2].is_some();
+            self.scan.numbers.corner(corner);
         }
-        if corners < 3 {
+        if self.scan.numbers.position_of.len() - first < 3 {
+            self.scan.numbers.forget_corners(first);
             self.scan.short_faces += 1;
             return Ok(());
         }
+        self.scan.numbers.end_face(first);
         self.state = FaceState { has_uvs, has_normals, ..self.state };
         self.count_face();
-        self.give(start, cut);
         Ok(())
     }
 
@@ -255,26 +250,23 @@ impl<'t> Pass<'t> {
         self.scan.n_faces += 1;
     }
 
-    /// One corner, `v`, `v/vt`, `v//vn` or `v/vt/vn`, at `at`, which moves on behind it; which of the three it gives.
-    fn corner(&mut self, at: &mut usize, end: usize) -> Result<[bool; 3], Fault> {
-        let (bytes, start) = (self.text.as_bytes(), *at);
-        let mut given = [false; 3];
-        for (list, is_given) in given.iter_mut().enumerate() {
+    /// One corner, `v`, `v/vt`, `v//vn` or `v/vt/vn`, at `at`, which moves on behind it: its indices from 0.
+    fn corner(&mut self, at: &mut usize, end: usize) -> Result<[Option<u32>; 3], Fault> {
+        let (bytes, start) = (&self.text.as_bytes()[..end], *at);
+        let mut given = [None; 3];
+        for (list, index) in given.iter_mut().enumerate() {
             let number = *at;
-            while *at < end && matches!(bytes[*at], b'0'..=b'9' | b'-' | b'+') {
-                *at += 1;
-            }
+            let value = signed_digits(bytes, at);
             if *at > number {
-                self.index(list, number, *at)?;
-                *is_given = true;
+                *index = Some(self.index(list, value, number..*at)?);
             }
             match bytes.get(*at) {
-                Some(b'/') if *at < end && list < 2 => *at += 1,
+                Some(b'/') if list < 2 => *at += 1,
                 _ => break,
             }
         }
-        let ends = *at == end || is_blank(bytes[*at]);
-        if ends && given[0] { Ok(given) } else { Err(self.no_corner(start, end)) }
+        let ends = bytes.get(*at).is_none_or(|b| is_blank(*b));
+        if ends && given[0].is_some() { Ok(given) } else { Err(self.no_corner(start, end)) }
     }
 
     fn no_corner(&self, start: usize, end: usize) -> Fault {
@@ -285,29 +277,36 @@ impl<'t> Pass<'t> {
         }
     }
 
-    /// Checks an index as far as it can be before the file's end.
-    fn index(&mut self, list: usize, start: usize, end: usize) -> Result<(), Fault> {
-        let digits = &self.text[start..end];
-        let fault = |message| Err(Fault { offset: start, message });
-        let Some(index) = whole_number(digits.as_bytes()) else {
-            return fault(format!("`{digits}` is no index"));
-        };
-        let (name, count) = (LISTS[list], self.counts[list]);
+    /// An index from 0, checked as far as it can be before the file's end; [`NONE`] into a list that is empty so far.
+    fn index(&mut self, list: usize, index: Option<i64>, place: Range<usize>) -> Result<u32, Fault> {
+        let count = self.counts[list];
         match index {
-            0 => fault(format!("a {name} has index 0, but OBJ counts from 1")),
-            i64::MIN..0 if -index > count && (list == 0 || count > 0) => {
-                fault(format!("index {index} refers to a {name} before the first: only {count} come before"))
+            Some(index) if index > 0 => {
+                if index > self.greatest[list].0 {
+                    self.greatest[list] = (index, place.start);
+                }
+                Ok((index - 1).min(i64::from(NONE) - 1) as u32)
             }
-            1.. if index > self.greatest[list].0 => {
-                self.greatest[list] = (index, start);
-                Ok(())
-            }
-            i64::MIN..0 if list > 0 && count == 0 => {
+            Some(index) if index < 0 && -index <= count => Ok((count + index) as u32),
+            Some(index) if index < 0 && list > 0 && count == 0 => {
                 self.scan.dangling = true;
-                Ok(())
+                Ok(NONE)
             }
-            _ => Ok(()),
+            _ => Err(self.no_index(list, index, place)),
         }
+    }
+
+    #[cold]
+    fn no_index(&self, list: usize, index: Option<i64>, place: Range<usize>) -> Fault {
+        let (name, count) = (LISTS[list], self.counts[list]);
+        let message = match index {
+            None => format!("`{}` is no index", &self.text[place.clone()]),
+            Some(0) => format!("a {name} has index 0, but OBJ counts from 1"),
+            Some(index) => {
+                format!("index {index} refers to a {name} before the first: only {count} come before")
+            }
+        };
+        Fault { offset: place.start, message }
     }
 
     fn check_indices(&mut self) -> Result<(), Fault> {
@@ -353,13 +352,22 @@ impl<'t> Pass<'t> {
     }
 }
 
-fn is_blank(byte: u8) -> bool {
+/// What stands between the words of a line.
+pub(super) fn is_blank(byte: u8) -> bool {
     matches!(byte, b' ' | b'\t' | b'\r' | 0x0b | 0x0c)
 }
 
-/// Whether nothing but blanks and line ends lies between two lines that are kept (looked for in a few bytes only).
-fn only_blanks(between: &[u8]) -> bool {
-    between.len() < 16 && between.iter().all(|b| *b == b'\n' || is_blank(*b))
+/// The whole number of the digits and signs at `at`, which moves on behind them; none where they make none.
+fn signed_digits(bytes: &[u8], at: &mut usize) -> Option<i64> {
+    let start = *at;
+    let (mut value, mut plain) = (0i64, true);
+    while let Some(byte @ (b'0'..=b'9' | b'-' | b'+')) = bytes.get(*at) {
+        plain &= byte.is_ascii_digit();
+        value = value.wrapping_mul(10).wrapping_add(i64::from(byte.wrapping_sub(b'0')));
+        *at += 1;
+    }
+    let digits = &bytes[start..*at];
+    if plain && (1..=18).contains(&digits.len()) { Some(value) } else { whole_number(digits) }
 }
 
 /// A whole number with an optional sign; none where it is malformed or has more than 18 digits.
@@ -388,13 +396,15 @@ fn word_at(text: &str, start: usize, end: usize) -> &str {
 pub(super) fn first_bad_number(text: &str) -> Option<Fault> {
     lines(text).find_map(|(start, end)| {
         let line = &text[start..end];
-        let keyword = line.split_whitespace().next()?;
+        let mut words =
+            line.split(|c: char| c == '\n' || u8::try_from(c).is_ok_and(is_blank)).filter(|w| !w.is_empty());
+        let keyword = words.next()?;
         let n = match keyword {
             "v" | "vn" => 3,
             "vt" => 2,
             _ => return None,
         };
-        let words = line.split_whitespace().skip(1).take(n).take_while(|w| *w != "\\");
+        let words = words.take(n).take_while(|w| *w != "\\");
         words.map(|word| (word, word.parse::<f64>())).find_map(|(word, number)| {
             let what = match number {
                 Err(_) => "is not a number",

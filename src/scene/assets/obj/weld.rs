@@ -4,23 +4,11 @@
 //! a single face's own. Slots are numbered before their normals are known, so that a seam of texture coordinates makes no
 //! crease.
 
+use super::numbers::{NONE, Numbers};
 use super::scan::{FaceState, NO_MATERIAL, Scan};
 use crate::geometry::mesh::{Mesh, OBJECT_MATERIAL, Triangulator, angle_weighted_normals, has_area, unit};
-use glam::{DVec2, DVec3};
+use glam::DVec3;
 use std::collections::HashMap;
-
-/// What tobj gives.
-pub(super) struct Numbers {
-    pub positions: Vec<DVec3>,
-    pub uvs: Vec<DVec2>,
-    pub normals: Vec<DVec3>,
-    /// Corners of each face; empty where all are triangles.
-    pub arities: Vec<u32>,
-    /// Of all corners of all faces in a row.
-    pub position_of: Vec<u32>,
-    pub uv_of: Vec<u32>,
-    pub normal_of: Vec<u32>,
-}
 
 /// A mesh, and what was left out of it.
 pub(super) struct Welded {
@@ -29,16 +17,14 @@ pub(super) struct Welded {
     pub flat_faces: usize,
 }
 
-const NONE: u32 = u32::MAX;
-
 /// The smoothing group of corners whose file has normals but not for them, or not of any length.
 const NO_GROUP: u32 = u32::MAX;
 
 /// Makes the mesh. `materials` gives the material index of each `usemtl` name. `smooth` overrules the file: on, all is one
 /// smooth surface; off, all faces are flat.
-pub(super) fn weld(numbers: Numbers, scan: &Scan<'_>, materials: &[u16], smooth: Option<bool>) -> Welded {
-    let shading = Shading::of(&numbers, scan, smooth);
-    let mut welder = Welder::new(&numbers, shading);
+pub(super) fn weld(numbers: &Numbers, scan: &Scan<'_>, materials: &[u16], smooth: Option<bool>) -> Welded {
+    let shading = Shading::of(numbers, scan, smooth);
+    let mut welder = Welder::new(numbers, shading);
     let mut polygons = Triangulator::default();
     let (mut first, mut flat_faces) = (0, 0);
     let mut runs = scan.runs.iter().peekable();
@@ -198,7 +184,7 @@ impl<'n> Welder<'n> {
 
     fn slot_of_file(&mut self, corner: usize, position: u32) -> u32 {
         if self.state.has_normals
-            && let Some(&normal) = self.numbers.normal_of.get(corner)
+            && let Some(&normal) = self.numbers.normal_of.get(corner).filter(|normal| **normal != NONE)
         {
             return match self.file_normals[normal as usize] != DVec3::ZERO {
                 true => normal,
