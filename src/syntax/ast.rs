@@ -11,8 +11,8 @@ pub struct Ident {
     pub span: Span,
 }
 
-/// An interned-free short string; an alias so that it can change in one place.
-pub type Name = Box<str>;
+/// A short string, in place up to 15 bytes: a file of a million blocks has many million names.
+pub type Name = ecow::EcoString;
 
 /// A whole file.
 #[derive(Clone, Debug, PartialEq)]

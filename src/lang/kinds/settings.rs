@@ -64,7 +64,7 @@ fn camera(ctx: &mut dyn Context, block: Block) -> Outcome {
         return Err(looks_at_itself(ctx, &block));
     }
     let made = Camera {
-        label: block.label.as_ref().map(|(name, _)| name.clone()),
+        label: block.label.as_ref().map(|(name, _)| name.as_str().into()),
         eye,
         look_at,
         up: up(ctx, &block, look_at - eye)?,

@@ -7,6 +7,7 @@ use crate::syntax::ast;
 use crate::syntax::build::{ParseLimits, parse_file};
 use std::collections::HashMap;
 use std::path::{Component, Path, PathBuf};
+use std::sync::Arc;
 
 /// Index into [`Files::files`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -100,12 +101,12 @@ impl<'a> Reading<'a> {
     /// Reads a root file. None where it cannot be read, which is reported.
     pub fn root_file(&mut self, path: &Path) -> Option<FileId> {
         let text = self.read(path, None)?;
-        Some(self.root_text(path, &text))
+        Some(self.add(path, text, None, &mut Vec::new()))
     }
 
     /// Takes a text as the root file of this path.
     pub fn root_text(&mut self, path: &Path, text: &str) -> FileId {
-        self.add(path, text, None, &mut Vec::new())
+        self.add(path, text.into(), None, &mut Vec::new())
     }
 
     /// Takes items that are parsed already as a root file of this path.
@@ -116,12 +117,12 @@ impl<'a> Reading<'a> {
     fn add(
         &mut self,
         path: &Path,
-        text: &str,
+        text: Arc<str>,
         imported_by: Option<Span>,
         chain: &mut Vec<(PathBuf, Span)>,
     ) -> FileId {
-        let source = self.sources.add(path.to_string_lossy(), text);
-        let (tree, faults) = parse_file(source, text, ParseLimits::nesting(self.limits.nesting));
+        let source = self.sources.add(path.to_string_lossy(), text.clone());
+        let (tree, faults) = parse_file(source, &text, ParseLimits::nesting(self.limits.nesting));
         self.add_tree(path, (source, tree, faults), imported_by, chain)
     }
 
@@ -159,7 +160,7 @@ impl<'a> Reading<'a> {
             Some(known) => *known,
             None => self
                 .read(&path, Some(import.path_span))
-                .map(|text| self.add(&path, &text, Some(import.path_span), chain)),
+                .map(|text| self.add(&path, text, Some(import.path_span), chain)),
         };
         self.files.by_path.insert(key, id);
         if let Some(id) = id {
@@ -192,7 +193,7 @@ impl<'a> Reading<'a> {
     }
 
     /// A file's text; faults are reported at the import, or without a place for the root.
-    fn read(&mut self, path: &Path, at: Option<Span>) -> Option<String> {
+    fn read(&mut self, path: &Path, at: Option<Span>) -> Option<Arc<str>> {
         let shown = path.display();
         let bytes = match self.loader.read(path) {
             Ok(bytes) => bytes,
@@ -213,7 +214,7 @@ impl<'a> Reading<'a> {
             return None;
         }
         match String::from_utf8(bytes) {
-            Ok(text) => Some(text),
+            Ok(text) => Some(text.into()),
             Err(error) => {
                 let place = error.utf8_error().valid_up_to();
                 let line = 1 + error.as_bytes()[..place].iter().filter(|b| **b == b'\n').count();

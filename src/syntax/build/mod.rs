@@ -171,8 +171,9 @@ fn parse_repaired(source: SourceId, text: &str, limits: ParseLimits) -> (Vec<ast
 fn parse_runs(text: &str, cuts: &[u32], origin: &Origin<'_>) -> (Vec<ast::Item>, Vec<Diagnostic>) {
     let runs = runs(text.len(), cuts);
     let parse = |run: &(usize, usize)| parse_run(text, *run, cuts, origin);
+    let alone = runs.len() < 4 || std::thread::available_parallelism().is_ok_and(|n| n.get() == 1);
     let parsed: Vec<_> =
-        if runs.len() < 4 { runs.iter().map(parse).collect() } else { runs.par_iter().map(parse).collect() };
+        if alone { runs.iter().map(parse).collect() } else { runs.par_iter().map(parse).collect() };
     let mut items = Vec::with_capacity(parsed.iter().map(|(items, _)| items.len()).sum());
     let mut found = Vec::new();
     for (run_items, run_found) in parsed {
