@@ -35,10 +35,10 @@ pub fn check_given(ctx: &mut dyn Context, kind: &'static Kind, given: &mut [Give
 /// How many properties a block may have before doubles are looked for by a table instead of pair by pair.
 const PAIRWISE: usize = 16;
 
-fn check_doubles(ctx: &mut dyn Context, kind: &Kind, given: &[Given]) -> Outcome<()> {
+fn check_doubles(ctx: &mut dyn Context, kind: &'static Kind, given: &[Given]) -> Outcome<()> {
     let mut outcome = Ok(());
     let mut double = |first: &Given, second: &Given| {
-        let repeats = kind.property(&second.name).is_none_or(|p| p.repeats);
+        let repeats = property_of(kind, second).is_none_or(|p| p.repeats);
         if !repeats {
             outcome = Err(ctx.fail(
                 Diagnostic::new(
@@ -54,7 +54,7 @@ fn check_doubles(ctx: &mut dyn Context, kind: &Kind, given: &[Given]) -> Outcome
     };
     if given.len() <= PAIRWISE {
         for (i, second) in given.iter().enumerate() {
-            if let Some(first) = given[..i].iter().find(|first| first.name == second.name) {
+            if let Some(first) = given[..i].iter().find(|first| same(first, second)) {
                 double(first, second);
             }
         }
@@ -72,8 +72,21 @@ fn check_doubles(ctx: &mut dyn Context, kind: &Kind, given: &[Given]) -> Outcome
     outcome
 }
 
+/// Whether two are given under one name.
+fn same(first: &Given, second: &Given) -> bool {
+    match (first.property, second.property) {
+        (Some(first), Some(second)) => std::ptr::eq(first, second),
+        _ => first.name == second.name,
+    }
+}
+
+/// What the table says of a property: known since names were resolved, or looked up.
+fn property_of(kind: &'static Kind, given: &Given) -> Option<&'static Property> {
+    given.property.or_else(|| kind.property(&given.name))
+}
+
 fn check_property(ctx: &mut dyn Context, kind: &'static Kind, given: &mut Given) -> Outcome<()> {
-    let Some(property) = kind.property(&given.name) else {
+    let Some(property) = property_of(kind, given) else {
         return if kind.open {
             Ok(())
         } else {

@@ -95,6 +95,7 @@ pub fn given(properties: &[(&str, &[Value])]) -> Vec<Given> {
     let each = |(i, (name, values)): (usize, &(&str, &[Value]))| Given {
         name: (*name).into(),
         name_span: span(100 * (i + 1)),
+        property: None,
         values: values
             .iter()
             .enumerate()

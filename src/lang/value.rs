@@ -1,11 +1,12 @@
 //! The values of the language. A value is 32 bytes or less and cheap to clone: numbers and short vectors are stored in place.
 
-use super::table::Builtin;
+use super::table::{Builtin, Property};
 use crate::diag::Span;
 use crate::geometry::any_curve::AnyCurve;
 use crate::math::Affine;
 use crate::scene::{Camera, Light, Material, Object, Pattern, RenderSettings};
 use glam::{DVec2, DVec3, DVec4};
+use smallvec::SmallVec;
 use std::rc::Rc;
 use std::sync::Arc;
 
@@ -213,9 +214,14 @@ pub struct Given {
     pub name: Rc<str>,
     /// The name's place.
     pub name_span: Span,
+    /// What the table says of it, where the block is known that it stands in.
+    pub property: Option<&'static Property>,
     /// The values with their places; none for a flag.
-    pub values: Vec<(Value, Span)>,
+    pub values: Values,
 }
+
+/// Values with their places: nearly always one.
+pub type Values = SmallVec<[(Value, Span); 1]>;
 
 impl Given {
     /// From the name to the last value.

@@ -7,6 +7,7 @@ use crate::lang::resolve::program::{self, BlockItem, Fate, With};
 use crate::lang::table::{Block, Context, Kind, Outcome, Reported, Role};
 use crate::lang::value::{Fragment, Given, Value};
 use crate::scene::{Node, RenderSettings};
+use smallvec::smallvec;
 use std::rc::Rc;
 
 impl<'p> Evaluator<'p> {
@@ -14,8 +15,8 @@ impl<'p> Evaluator<'p> {
         let block = &item.block;
         self.top.attempts.setting |= block.kind.role == Role::Setting;
         let value = self.block(block);
-        let name = match &item.fate {
-            Fate::Given(name) => name,
+        let (name, property) = match &item.fate {
+            Fate::Given(name, property) => (name, property),
             Fate::Named => return value.map(|_| ()),
             Fate::Placed => return self.place_block(value?, block, out),
         };
@@ -23,7 +24,8 @@ impl<'p> Evaluator<'p> {
             Ok(value) => out.given.push(Given {
                 name: name.clone(),
                 name_span: block.kind_span,
-                values: vec![(value, block.span)],
+                property: *property,
+                values: smallvec![(value, block.span)],
             }),
             Err(Reported) => {
                 out.poisoned.push((name.clone(), block.kind_span));

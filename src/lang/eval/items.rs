@@ -9,7 +9,7 @@ use crate::lang::resolve::program::{
     While,
 };
 use crate::lang::table::{Context, Outcome, Reported};
-use crate::lang::value::{Given, Value};
+use crate::lang::value::{Given, Value, Values};
 use crate::scene::{Node, Object, Shape};
 use std::rc::Rc;
 use std::sync::Arc;
@@ -187,7 +187,7 @@ impl<'p> Evaluator<'p> {
     }
 
     fn property(&mut self, property: &'p Property, out: &mut Produced) -> Outcome<()> {
-        let mut values = Vec::with_capacity(property.values.len());
+        let mut values = Values::with_capacity(property.values.len());
         let mut outcome = Ok(());
         for value in &property.values {
             match self.expr(value) {
@@ -196,9 +196,12 @@ impl<'p> Evaluator<'p> {
             }
         }
         match outcome {
-            Ok(()) => {
-                out.given.push(Given { name: property.name.clone(), name_span: property.name_span, values })
-            }
+            Ok(()) => out.given.push(Given {
+                name: property.name.clone(),
+                name_span: property.name_span,
+                property: property.known,
+                values,
+            }),
             Err(Reported) => out.poisoned.push((property.name.clone(), property.name_span)),
         }
         outcome

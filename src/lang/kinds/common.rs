@@ -109,6 +109,9 @@ pub fn transform_of(ctx: &mut dyn Context, given: &[Given]) -> Outcome<Option<Af
         }
     }
     outcome?;
+    if whole.is_none() {
+        return Ok(None);
+    }
     let finite = |a: &Affine| {
         a.linear.is_finite()
             && a.translation.is_finite()

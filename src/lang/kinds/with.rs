@@ -112,6 +112,7 @@ fn rebuild(
         |(name, values)| Given {
             name: name.into(),
             name_span: place.base,
+            property: kind.property(name),
             values: values.into_iter().map(|value| (value, place.base)).collect(),
         },
     );

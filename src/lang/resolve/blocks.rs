@@ -93,9 +93,9 @@ impl<'a> Resolver<'a> {
             }
             (Some(_), _) => Some(Fate::Named),
             (None, Place::Block(around)) if property_of(around) => {
-                Some(Fate::Given(self.word(&block.kind.name)))
+                Some(Fate::Given(self.word(&block.kind.name), around.property(kind.name)))
             }
-            (None, Place::Loose) => Some(Fate::Given(self.word(&block.kind.name))),
+            (None, Place::Loose) => Some(Fate::Given(self.word(&block.kind.name), None)),
             (None, Place::Block(around)) => {
                 self.report(crate::lang::check::unknown_property(around, kind.name, block.kind.span));
                 None

@@ -305,16 +305,20 @@ impl<'a> Resolver<'a> {
             Place::Top => property.values.iter().map(|e| self.expr(e)).collect(),
         };
         let known = match place {
-            Place::Block(kind) => kind.open || kind.build.is_none() || kind.property(&name.name).is_some(),
+            Place::Block(kind) => kind.property(&name.name),
+            Place::Loose | Place::Top => None,
+        };
+        let may_be = match place {
+            Place::Block(kind) => known.is_some() || kind.open || kind.build.is_none(),
             Place::Loose => true,
             Place::Top => false,
         };
-        if !known {
+        if !may_be {
             self.report_unknown_property(name, &property.values, place);
             return ItemKind::Poison(Some(self.word(&name.name)));
         }
         let name_word = self.word(&name.name);
-        ItemKind::Property(Box::new(Property { name: name_word, name_span: name.span, values }))
+        ItemKind::Property(Box::new(Property { name: name_word, name_span: name.span, known, values }))
     }
 
     fn report_unknown_property(&mut self, name: &ast::Ident, values: &[ast::Expr], place: Place) {
@@ -365,6 +369,7 @@ impl<'a> Resolver<'a> {
             return ItemKind::Property(Box::new(Property {
                 name: name_word,
                 name_span: name.span,
+                known: None,
                 values: Vec::new(),
             }));
         }

@@ -2,7 +2,7 @@
 //! table. Knows nothing of values beyond constants.
 
 use crate::diag::Span;
-use crate::lang::table::{Builtin, Kind};
+use crate::lang::table::{self, Builtin, Kind};
 use crate::lang::value::Value;
 use std::rc::Rc;
 
@@ -161,6 +161,8 @@ pub struct Property {
     pub name: Word,
     /// The name's place.
     pub name_span: Span,
+    /// What the table says of it, where the block around it is known.
+    pub known: Option<&'static table::Property>,
     /// Its values.
     pub values: Vec<Expr>,
 }
@@ -179,8 +181,8 @@ pub struct BlockItem {
 pub enum Fate {
     /// It is placed.
     Placed,
-    /// It is the property of its kind's name.
-    Given(Word),
+    /// It is the property of its kind's name, with what the table says of that where the block around is known.
+    Given(Word, Option<&'static table::Property>),
     /// It is only named.
     Named,
 }
