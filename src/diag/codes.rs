@@ -72,6 +72,7 @@ codes! {
     NotBuilt = "W0308", "a part of the language is not built yet";
     UnknownWord = "E0309", "a word is not one of those the property takes";
     EnergyGain = "W0310", "a material returns more light than it gets";
+    NotSolid = "E0311", "a surface that is no solid is put together with solids";
     // 4: evaluation and its guards
     AssertFailed = "E0401", "an assertion does not hold";
     UserError = "E0402", "the scene calls `error`";
@@ -96,6 +97,7 @@ codes! {
     BadGeometry = "E0604", "a shape is degenerate";
     UnknownCamera = "E0605", "no camera has this label";
     UnknownSetting = "E0606", "`--set` names no top-level `let`";
+    EmptySolid = "W0607", "nothing is left of solids that are put together";
     // 7: rendering
     UndefinedSample = "E0701", "a function is undefined at samples of the picture";
     NonFiniteSample = "W0702", "samples of the picture are infinite or not a number";

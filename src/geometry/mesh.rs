@@ -8,6 +8,7 @@ pub use triangulate::Triangulator;
 
 use crate::math::Aabb;
 use glam::{DVec2, DVec3};
+use std::collections::HashMap;
 
 /// Triangles that share vertices. Always valid: indices in range, positions finite, arrays of one length or empty.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -152,6 +153,29 @@ impl Mesh {
             a.dot(b.cross(c))
         };
         (0..self.triangles.len()).map(six_fold).sum::<f64>() / 6.0
+    }
+
+    /// Whether each edge lies between two triangles, or some other even number of them, so that the mesh has an inside. Corners at the
+    /// same place are one, whatever their numbers.
+    pub fn is_closed(&self) -> bool {
+        let mut numbers: HashMap<[u64; 3], u32> = HashMap::new();
+        // Adding 0 makes −0 the same as 0.
+        let place_of = |p: DVec3| (p + 0.0).to_array().map(f64::to_bits);
+        let places: Vec<u32> = self
+            .positions
+            .iter()
+            .map(|p| {
+                let next = numbers.len() as u32;
+                *numbers.entry(place_of(*p)).or_insert(next)
+            })
+            .collect();
+        let mut edges: Vec<[u32; 2]> = Vec::with_capacity(3 * self.triangles.len());
+        for triangle in &self.triangles {
+            let [a, b, c] = triangle.map(|i| places[i as usize]);
+            edges.extend([[a, b], [b, c], [c, a]].map(|[a, b]| [a.min(b), a.max(b)]));
+        }
+        edges.sort_unstable();
+        !edges.is_empty() && edges.chunk_by(|a, b| a == b).all(|same| same.len() % 2 == 0)
     }
 
     /// Sets smooth normals, one per position, from the triangles around it.

@@ -7,6 +7,7 @@ pub mod light;
 pub mod material;
 pub mod object;
 pub mod settings;
+mod solid;
 
 pub use camera::{Camera, Projection};
 pub use light::{Light, LightSource, Sky};
@@ -14,8 +15,9 @@ pub use material::{
     Filter, Fresnel, ImagePattern, Layers, Lobe, Material, Pattern, PatternKind, SampleInput,
     SampledFunction, Texture, Wrap,
 };
-pub use object::{Cone, Disc, Hide, MeshSource, Node, Object, Rect, Shape, Torus, Triangle};
+pub use object::{Cone, Csg, CsgOp, Disc, Hide, MeshSource, Node, Object, Rect, Shape, Torus, Triangle};
 pub use settings::{Accelerator, RenderSettings, ToneMap, TracerKind};
+pub use solid::{open_mesh, solid_fault};
 
 /// A colour or any triple of linear RGB: red, green, blue.
 pub type Rgb = glam::DVec3;

@@ -91,6 +91,55 @@ pub enum Shape {
     Mesh(Arc<MeshSource>),
     /// Children, shared between placements of the group.
     Group(Arc<[Node]>),
+    /// Solids put together, shared between placements.
+    Csg(Arc<Csg>),
+}
+
+impl Shape {
+    /// What stands inside a group or a solid put together; nothing for all else.
+    pub fn children(&self) -> &[Node] {
+        match self {
+            Shape::Group(children) => children,
+            Shape::Csg(csg) => &csg.children,
+            Shape::Sphere { .. } | Shape::Plane { .. } | Shape::Disc(_) | Shape::Rect(_) | Shape::Box(_) => {
+                &[]
+            }
+            Shape::Cone(_) | Shape::Torus(_) | Shape::Triangle(_) | Shape::Mesh(_) => &[],
+        }
+    }
+}
+
+/// Solids put together (constructive solid geometry). Groups among the children stand for the union of what they hold.
+#[derive(Clone, Debug)]
+pub struct Csg {
+    /// How.
+    pub op: CsgOp,
+    /// Whether inside and outside are exchanged.
+    pub inverse: bool,
+    /// The solids, in order; no lights.
+    pub children: Arc<[Node]>,
+}
+
+/// How solids are put together.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum CsgOp {
+    /// Inside any.
+    Union,
+    /// Inside all.
+    Intersection,
+    /// Inside the first alone.
+    Difference,
+}
+
+impl CsgOp {
+    /// The word of the language.
+    pub fn word(self) -> &'static str {
+        match self {
+            CsgOp::Union => "union",
+            CsgOp::Intersection => "intersection",
+            CsgOp::Difference => "difference",
+        }
+    }
 }
 
 /// A flat disc.

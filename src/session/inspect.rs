@@ -189,13 +189,7 @@ fn object(object: &Object) -> Entry {
         let words: Vec<&str> = hidden.iter().filter(|(_, is)| *is).map(|(word, _)| *word).collect();
         properties.push(("hide", json!(words)));
     }
-    let children = match &object.shape {
-        Shape::Group(children) => children.iter().map(node).collect(),
-        Shape::Sphere { .. } | Shape::Plane { .. } | Shape::Disc(_) | Shape::Rect(_) | Shape::Box(_) => {
-            vec![]
-        }
-        Shape::Cone(_) | Shape::Torus(_) | Shape::Triangle(_) | Shape::Mesh(_) => vec![],
-    };
+    let children = object.shape.children().iter().map(node).collect();
     Entry { kind: shape_word(&object.shape), span: Some(object.span), properties, children }
 }
 
@@ -212,6 +206,7 @@ fn shape_word(shape: &Shape) -> &'static str {
         Shape::Triangle(_) => "triangle",
         Shape::Mesh(_) => "mesh",
         Shape::Group(_) => "group",
+        Shape::Csg(csg) => csg.op.word(),
     }
 }
 
@@ -244,6 +239,7 @@ fn shape_properties(shape: &Shape) -> Vec<(&'static str, Json)> {
         }
         Shape::Mesh(mesh) => mesh_properties(mesh),
         Shape::Group(_) => vec![],
+        Shape::Csg(csg) => csg.inverse.then(|| ("inverse", json!(true))).into_iter().collect(),
     }
 }
 

@@ -86,6 +86,12 @@ impl Survey {
                 self.objects = true;
             }
             Shape::Cone(_) | Shape::Torus(_) | Shape::Triangle(_) => self.objects = true,
+            Shape::Csg(csg) => {
+                self.objects = true;
+                if self.seen.insert(Arc::as_ptr(&csg.children)) {
+                    self.walk(&csg.children);
+                }
+            }
         }
     }
 }

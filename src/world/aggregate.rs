@@ -3,7 +3,7 @@
 
 use super::bvh::Tree;
 use super::shape::mesh::MeshShape;
-use super::shape::{EVERYTHING, Shape, image_of};
+use super::shape::{Csg, EVERYTHING, Shape, image_of};
 use crate::diag::Span;
 use crate::math::{Aabb, Affine};
 use crate::scene::{Hide, Light};
@@ -49,18 +49,23 @@ impl Aggregate {
 /// A mesh and the materials of its file.
 #[derive(Debug)]
 pub(super) struct MeshAggregate {
-    pub shape: MeshShape,
+    pub shape: Arc<MeshShape>,
     pub bounds: Aabb,
     /// By the mesh's own numbers; empty where it has none.
-    pub materials: Vec<u32>,
+    pub materials: Arc<[u32]>,
 }
 
 impl MeshAggregate {
     /// The material that the mesh's file gives a triangle.
     pub fn material_of(&self, triangle: u32) -> u32 {
-        let own = self.shape.mesh.material_of_triangle.get(triangle as usize);
-        own.and_then(|&m| self.materials.get(m as usize)).copied().unwrap_or(INHERITED)
+        mesh_material(&self.shape, &self.materials, triangle)
     }
+}
+
+/// The material that a mesh's file gives a triangle, by the numbers of its materials.
+pub(super) fn mesh_material(shape: &MeshShape, materials: &[u32], triangle: u32) -> u32 {
+    let own = shape.mesh.material_of_triangle.get(triangle as usize);
+    own.and_then(|&m| materials.get(m as usize)).copied().unwrap_or(INHERITED)
 }
 
 /// Shapes and placements, in the order of the scene, as columns: what a ray needs first apart from what a hit needs.
@@ -169,6 +174,15 @@ impl Group {
     /// The number in the scene's order of the item at a position.
     pub fn number_of(&self, position: u32) -> u32 {
         self.tree.order()[position as usize]
+    }
+
+    /// The solid put together that an item is, by its number in the scene's order, if it is one.
+    pub fn csg(&self, number: u32) -> Option<&Csg> {
+        let position = self.tree.order().iter().position(|&n| n == number)?;
+        match &self.items[position] {
+            Item::Shape(Shape::Csg(csg), _) => Some(csg),
+            Item::Shape(..) | Item::Instance(_) => None,
+        }
     }
 
     /// The placement that holds, or is, the one numbered `id` from this group, and its position; none for 0.

@@ -4,17 +4,19 @@
 mod lights;
 mod meshes;
 mod shapes;
+mod solids;
 mod survey;
 
 use super::aggregate::{Aggregate, Group, INHERITED, Instance, Item, Scope};
 use super::bvh::Tree;
-use super::shape::EVERYTHING;
+use super::shape::{self, EVERYTHING};
 use super::{World, WorldOptions};
 use crate::diag::{Code, Diagnostic, Sink, Span};
 use crate::math::Affine;
 use crate::scene::assets::AssetCache;
 use crate::scene::{Accelerator, Hide, Light, LightSource, Material, Node, Object, Rgb, Shape, Texture};
 use meshes::Meshes;
+use solids::Solids;
 use std::collections::HashMap;
 use std::sync::Arc;
 use survey::Survey;
@@ -41,6 +43,7 @@ pub(super) fn lower(
         heights: vec![0],
         placed: HashMap::new(),
         meshes: Meshes::default(),
+        solids: Solids::default(),
     };
     let world_group = lowering.group(Source::Owned(nodes.into_iter()), 0);
     lowering.aggregates[0] = Aggregate::Group(world_group);
@@ -69,6 +72,7 @@ struct Lowering<'a> {
     /// Aggregates of shared groups, by the address of their first node. The group is kept so that no other takes its place.
     placed: HashMap<*const Node, (u32, Arc<[Node]>)>,
     meshes: Meshes,
+    solids: Solids,
 }
 
 /// Nodes on their way. Those of a group that nobody else holds are taken out of it one by one, so that they are freed as they go and
@@ -211,6 +215,12 @@ impl Lowering<'_> {
             Shape::Mesh(source) => {
                 let aggregate = self.mesh(source, span)?;
                 self.instance(group, aggregate, transform, facts);
+                None
+            }
+            Shape::Csg(csg) => {
+                if let Some(csg) = self.csg(&csg, span) {
+                    group.add(Item::Shape(shape::Shape::Csg(csg), transform), facts);
+                }
                 None
             }
             simple => {

@@ -61,7 +61,7 @@ pub struct PrimitiveId {
     pub instance: u64,
     /// The shape within it.
     pub shape: u32,
-    /// The triangle within a mesh, else 0.
+    /// The triangle within a mesh, the part within solids put together, else 0.
     pub part: u32,
 }
 

@@ -1,11 +1,11 @@
 //! From a meeting in some shape's own space to a [`Hit`] in the world's: the way down through the placements, and the surface
 //! carried back up it.
 
-use super::aggregate::{Aggregate, Group, INHERITED, Instance, Item};
+use super::aggregate::{Aggregate, Group, INHERITED, Instance, Item, mesh_material};
 use super::query::Candidate;
-use super::shape::{LocalRay, Surface, perpendicular};
+use super::shape::csg::Solid;
+use super::shape::{LocalRay, Meet, Shape, carried, perpendicular};
 use super::{Hit, PrimitiveId, Provenance, World};
-use crate::math::Affine;
 use crate::math::error::gamma;
 use glam::DVec3;
 
@@ -85,12 +85,22 @@ impl World {
         for transform in transforms.clone() {
             local = local.into_local(transform)?.0;
         }
-        let surface = match (shape, path.aggregate) {
-            (Some(shape), _) => shape.surface(&local, &candidate.meet),
-            (None, Aggregate::Mesh(mesh)) => mesh.shape.surface(candidate.id.part, &candidate.meet),
+        let (surface, local_point) = match (shape, path.aggregate) {
+            (Some(Shape::Csg(csg)), _) => {
+                let part = csg.surface(&local, &candidate.meet);
+                (part.whole, part.own_point)
+            }
+            (Some(shape), _) => {
+                let surface = shape.surface(&local, &candidate.meet);
+                (surface, surface.point)
+            }
+            (None, Aggregate::Mesh(mesh)) => {
+                let surface = mesh.shape.surface(candidate.id.part, &candidate.meet);
+                (surface, surface.point)
+            }
             (None, Aggregate::Group(_)) => return None,
         };
-        let material = &self.materials[self.material_on(&path, candidate.id) as usize];
+        let material = &self.materials[self.material_on(&path, shape, candidate) as usize];
         let world = carried(&surface, transforms);
         let normal = on_side_of(world.normal, world.geometric_normal);
         Some(Hit {
@@ -101,14 +111,16 @@ impl World {
             normal,
             tangent: tangent_for(normal, world.tangent),
             uv: surface.uv,
-            local_point: surface.point,
+            local_point,
             material,
             primitive: candidate.id,
         })
     }
 
-    /// An object's own material wins, then its mesh's, then that of the groups around it, from inside out.
-    fn material_on(&self, path: &Path<'_>, id: PrimitiveId) -> u32 {
+    /// A part's own material wins, then its object's, then its mesh's, then that of the groups around it, from inside out.
+    fn material_on(&self, path: &Path<'_>, shape: Option<&Shape>, candidate: &Candidate) -> u32 {
+        let id = candidate.id;
+        let of_part = shape.map_or(INHERITED, |shape| part_material(shape, &candidate.meet));
         let mut placed = path.steps.iter().rev().map(|step| step.group.material[step.item as usize]);
         let own = match path.aggregate {
             Aggregate::Group(group) => group.material[id.shape as usize],
@@ -117,7 +129,7 @@ impl World {
                 _ => mesh.material_of(id.part),
             },
         };
-        let chosen = std::iter::once(own).chain(placed).find(|&m| m != INHERITED);
+        let chosen = [of_part, own].into_iter().chain(placed).find(|&m| m != INHERITED);
         chosen.unwrap_or(super::lower::DEFAULT_MATERIAL)
     }
 
@@ -141,51 +153,28 @@ impl World {
             }
         };
         let name = group.names.get(&item).cloned();
-        Some(Provenance { span: *group.span.get(item as usize)?, path: spans, name })
+        let own = *group.span.get(item as usize)?;
+        let span = match group.csg(item) {
+            Some(csg) => {
+                spans.push(own);
+                csg.part_at(primitive.part)?.span
+            }
+            None => own,
+        };
+        Some(Provenance { span, path: spans, name })
     }
 }
 
-/// A surface through transforms, the outermost first. Its error grows by the rounding on the way up and by what comes of going
-/// down the same way again, which the next ray will do: that part is measured, since composed inverses are inverses only up to the
-/// condition of the map.
-fn carried<'t>(surface: &Surface, transforms: impl Iterator<Item = &'t Affine> + Clone) -> Surface {
-    let mut all = transforms.clone();
-    let Some(first) = all.next() else { return *surface };
-    let up = all.fold(*first, |outer, inner| inner.then(&outer));
-    let point = up.point(surface.point);
-    let mut back = point;
-    let mut doubt_down = DVec3::ZERO;
-    for transform in transforms {
-        let terms = absolute(&transform.inverse_linear, back.abs()) + transform.inverse_translation.abs();
-        doubt_down = absolute(&transform.inverse_linear, doubt_down) + terms * gamma(4);
-        back = transform.inverse_linear * back + transform.inverse_translation;
+/// The material that the part of a solid has of its own.
+fn part_material(shape: &Shape, meet: &Meet) -> u32 {
+    let Shape::Csg(csg) = shape else { return INHERITED };
+    let part = csg.part(meet);
+    match &part.solid {
+        Solid::Mesh(mesh, materials) if part.material == INHERITED => {
+            mesh_material(mesh, materials, meet.face)
+        }
+        _ => part.material,
     }
-    let local_doubt = surface.error + (back - surface.point).abs() * 2.0 + doubt_down;
-    let terms = absolute(&up.linear, surface.point.abs()) + up.translation.abs();
-    let geometric_normal = normal_through(&up, surface.geometric_normal);
-    Surface {
-        point,
-        error: absolute(&up.linear, local_doubt) * (1.0 + gamma(4)) + terms * gamma(4),
-        geometric_normal,
-        normal: if surface.normal == surface.geometric_normal {
-            geometric_normal
-        } else {
-            normal_through(&up, surface.normal)
-        },
-        tangent: up.vector(surface.tangent),
-        uv: surface.uv,
-    }
-}
-
-/// |M|·v for a vector of magnitudes.
-fn absolute(m: &glam::DMat3, v: DVec3) -> DVec3 {
-    m.x_axis.abs() * v.x + m.y_axis.abs() * v.y + m.z_axis.abs() * v.z
-}
-
-/// By the inverse transpose, so that outward stays outward under mirrors too; scaled first, so that nothing overflows.
-fn normal_through(up: &Affine, normal: DVec3) -> DVec3 {
-    let n = up.normal(normal);
-    (n / n.abs().max_element()).try_normalize().unwrap_or(normal)
 }
 
 /// The unit shading normal, turned to the geometric normal's side; the geometric normal where the two are perpendicular or the

@@ -2,7 +2,7 @@
 
 use super::aggregate::{Aggregate, Group, Item};
 use super::shape::triangle::Sheared;
-use super::shape::{LocalRay, Meet};
+use super::shape::{Csg, LocalRay, Meet};
 use super::{PrimitiveId, RayKind, World};
 use crate::scene::Hide;
 
@@ -108,7 +108,8 @@ impl<'w> Query<'w> {
                 };
                 let inside = Local { ray, per_world: local.per_world * factor, instance: local.instance };
                 if let Some(meet) = shape.meet(&ray, self.limit * inside.per_world) {
-                    let id = PrimitiveId { instance: local.instance, shape: number(), part: 0 };
+                    let part = Csg::part_number(&meet);
+                    let id = PrimitiveId { instance: local.instance, shape: number(), part };
                     self.offer(id, position as u32, meet, &inside);
                 }
             }

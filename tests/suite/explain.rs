@@ -42,6 +42,7 @@ fn run(code: Code, example: &Example, all: &[Example]) -> Run {
             | Code::MeshRepaired
             | Code::MissingMaterialFile
             | Code::BadImage
+            | Code::EmptySolid
     );
     let command = if is_render { "render --size 16x12 --samples 1" } else { "check --format short" };
     folder.ogee(&format!("{command} {} scene.scene", example.rest))

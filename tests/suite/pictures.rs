@@ -26,6 +26,19 @@ fn pyramid(s: f64) -> Mesh {
     Mesh { positions, normals, triangles, ..Mesh::default() }
 }
 
+/// A box with a flush hole and a bite.
+fn bitten(s: f64) -> Shape {
+    let v = |x, y, z| DVec3::new(x, y, z) * s;
+    let hole = Cone { from: v(0.0, -0.3, 0.0), to: v(0.0, 0.3, 0.0), radii: [0.15 * s; 2] };
+    let parts = [
+        cuboid(v(-0.3, -0.3, -0.3), v(0.3, 0.3, 0.3)),
+        Shape::Cone(Box::new(hole)),
+        sphere(v(0.3, 0.3, 0.3), 0.2 * s),
+    ];
+    let children = parts.map(|part| object(part, &diffuse(0.6))).into();
+    Shape::Csg(Arc::new(Csg { op: CsgOp::Difference, inverse: false, children }))
+}
+
 /// A bit of everything, with every length times `s`.
 fn still_life(s: f64) -> Vec<Node> {
     let tinted = layered(0.0, |l| {
@@ -56,6 +69,7 @@ fn still_life(s: f64) -> Vec<Node> {
         object(plane(DVec3::Y, 0.0), &floor),
         object(sphere(v(0.0, 1.0, 0.0), s), &tinted),
         object(sphere(v(-1.7, 0.6, 0.4), 0.6 * s), &shiny),
+        placed(bitten(s), &diffuse(0.6), Some(Affine::translate(v(-0.6, 0.3, 1.9)))),
         placed(cuboid(v(-0.4, -0.4, -0.4), v(0.4, 0.4, 0.4)), &diffuse(0.7), Some(turned)),
         object(
             Shape::Cone(Box::new(Cone {

@@ -180,7 +180,11 @@ impl Evaluator<'_> {
     /// Refuses groups nested beyond what every later stage can follow. `span` is the block's.
     pub(super) fn check_nesting(&mut self, value: &Value, span: Span) -> Outcome<()> {
         let Value::Object(object) = value else { return Ok(()) };
-        let Shape::Group(children) = &object.shape else { return Ok(()) };
+        let children = match &object.shape {
+            Shape::Group(children) => children,
+            Shape::Csg(csg) => &csg.children,
+            _ => return Ok(()),
+        };
         let depth = 1 + children.iter().map(|node| self.depth_of(node)).max().unwrap_or(0);
         if depth > DEEPEST_GROUP {
             let message = format!("groups are nested {depth} deep");
@@ -200,7 +204,9 @@ impl Evaluator<'_> {
     fn depth_of(&self, node: &Node) -> u32 {
         let Node::Object(object) = node else { return 0 };
         match &object.shape {
-            Shape::Group(children) => self.standing.depths.get(&children.as_ptr()).copied().unwrap_or(1),
+            Shape::Group(_) | Shape::Csg(_) => {
+                self.standing.depths.get(&object.shape.children().as_ptr()).copied().unwrap_or(1)
+            }
             _ => 0,
         }
     }

@@ -222,7 +222,12 @@ fn emitter(ctx: &mut dyn Context, block: &Block) -> Outcome<Arc<Object>> {
         }
         // What is not built yet stands in for itself as an empty group; it was said where it stands.
         Shape::Group(nodes) if nodes.is_empty() => Err(Reported),
-        Shape::Plane { .. } | Shape::Box(_) | Shape::Cone(_) | Shape::Torus(_) | Shape::Group(_) => {
+        Shape::Plane { .. }
+        | Shape::Box(_)
+        | Shape::Cone(_)
+        | Shape::Torus(_)
+        | Shape::Group(_)
+        | Shape::Csg(_) => {
             let message = "an area light is a `rect`, `disc`, `sphere`, `triangle` or `mesh`";
             let hint = "any other object shines with `material { emit … }`";
             Err(block.fault(ctx, Code::BadProperty, "area", message, hint))

@@ -11,6 +11,7 @@ mod objects;
 mod read;
 mod settings;
 mod shapes;
+mod solids;
 pub mod splines;
 #[cfg(test)]
 mod tests;
@@ -49,9 +50,9 @@ pub static ALL: &[&Kind] = &[
     &unbuilt::LATHE,
     &unbuilt::EXTRUDE,
     &unbuilt::IMPLICIT,
-    &unbuilt::UNION,
-    &unbuilt::INTERSECTION,
-    &unbuilt::DIFFERENCE,
+    &solids::UNION,
+    &solids::INTERSECTION,
+    &solids::DIFFERENCE,
     &unbuilt::SKIN,
     &unbuilt::MODEL,
     &unbuilt::SKELETON,

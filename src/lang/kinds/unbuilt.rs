@@ -143,36 +143,6 @@ pub static IMPLICIT: Kind = unbuilt(
     ],
 );
 
-const INVERSE: &[Property] =
-    &[Property::new("inverse", &[&[], &[Type::Bool]], "off", "the outside becomes the inside")];
-
-/// What is in any.
-pub static UNION: Kind = with_children(unbuilt(
-    "union",
-    "What is inside any of its solids.",
-    "union { sphere { radius 1 }  box { min <0, 0, 0>  max <1, 1, 1> } }",
-    Role::Object,
-    INVERSE,
-));
-
-/// What is in all.
-pub static INTERSECTION: Kind = with_children(unbuilt(
-    "intersection",
-    "What is inside all of its solids.",
-    "intersection { sphere { radius 1 }  box { min <0, 0, 0>  max <1, 1, 1> } }",
-    Role::Object,
-    INVERSE,
-));
-
-/// What is in the first alone.
-pub static DIFFERENCE: Kind = with_children(unbuilt(
-    "difference",
-    "What is inside the first of its solids and outside all others.",
-    "difference { sphere { radius 1 }  box { min <0, 0, 0>  max <1, 1, 1> } }",
-    Role::Object,
-    INVERSE,
-));
-
 /// A skinned surface.
 pub static SKIN: Kind = unbuilt(
     "skin",

@@ -152,7 +152,11 @@ fn to_object(
     } else {
         check::check_given(ctx, kind, &mut given)?;
     }
-    if let (false, Shape::Group(nodes)) = (children.is_empty(), &copy.shape) {
+    if let Shape::Csg(_) = &copy.shape
+        && !children.is_empty()
+    {
+        copy.shape = super::solids::with_more(ctx, &copy.shape, children)?;
+    } else if let (false, Shape::Group(nodes)) = (children.is_empty(), &copy.shape) {
         copy.shape = Shape::Group(nodes.iter().cloned().chain(children).collect());
     }
     common::apply_to_object(ctx, &mut copy, &given)?;
@@ -169,6 +173,12 @@ fn own_changed(
     rest: &mut [Given],
 ) -> Outcome<Shape> {
     let checked = check::check_given(ctx, kind, rest);
+    if let Shape::Csg(_) = shape {
+        let mut own = own;
+        check::check_given(ctx, kind, &mut own)?;
+        checked?;
+        return Ok(own.iter().fold(shape.clone(), |shape, given| super::solids::with_inverse(&shape, given)));
+    }
     if let Some(smoothed) = smoothed(ctx, kind, shape, &own) {
         checked?;
         return smoothed;

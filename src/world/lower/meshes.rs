@@ -74,7 +74,7 @@ impl Lowering<'_> {
             return None;
         }
         let materials = materials.into_iter().map(|m| self.materials.number(m)).collect();
-        let shape = MeshShape::new(Arc::new(mesh), self.with_trees);
+        let shape = Arc::new(MeshShape::new(Arc::new(mesh), self.with_trees));
         let bounds = if shape.tree.is_unbounded() { EVERYTHING } else { shape.tree.bounds() };
         Some(self.keep(Aggregate::Mesh(MeshAggregate { shape, bounds, materials })))
     }

@@ -47,7 +47,9 @@ pub(super) fn convert(shape: scene::Shape) -> Result<Shape, String> {
             check(good, || "a torus needs two positive radii".into())?;
             Ok(Shape::Torus(Box::new(Torus::new(*torus))))
         }
-        scene::Shape::Mesh(_) | scene::Shape::Group(_) => Err("not a simple shape".into()),
+        scene::Shape::Mesh(_) | scene::Shape::Group(_) | scene::Shape::Csg(_) => {
+            Err("not a simple shape".into())
+        }
     }
 }
 

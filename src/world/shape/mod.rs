@@ -4,7 +4,9 @@
 //! wins is turned into a [`Surface`]. Surfaces carry a bound on the error of their point, large enough that a ray started
 //! beyond it does not meet the same shape at the same place again.
 
+mod carried;
 mod cone;
+pub mod csg;
 mod cuboid;
 mod disc;
 pub mod mesh;
@@ -16,7 +18,9 @@ mod tests;
 mod torus;
 pub mod triangle;
 
+pub use carried::carried;
 pub use cone::Cone;
+pub use csg::Csg;
 pub use cuboid::Cuboid;
 pub use disc::Disc;
 pub use plane::Plane;
@@ -28,6 +32,7 @@ pub use triangle::Triangle;
 use crate::math::exact::{exponent, power_of_two};
 use crate::math::{Aabb, Affine};
 use glam::{DVec2, DVec3};
+use std::sync::Arc;
 
 /// A ray in some space, its direction scaled by a power of two to a largest component in [1, 2).
 #[derive(Clone, Copy, Debug)]
@@ -70,8 +75,10 @@ pub struct Meet {
     pub a: f64,
     /// The second such number.
     pub b: f64,
-    /// Which face of a shape that has several.
+    /// Which face of a shape that has several; the triangle of a mesh among solids that are put together.
     pub face: u32,
+    /// Which of the solids that are put together, and more that [`Csg`] alone reads; else 0.
+    pub part: u32,
 }
 
 /// Whether a distance along a ray counts.
@@ -115,6 +122,7 @@ pub enum Shape {
     Cone(Box<Cone>),
     Torus(Box<Torus>),
     Triangle(Box<Triangle>),
+    Csg(Arc<Csg>),
 }
 
 impl Shape {
@@ -129,6 +137,7 @@ impl Shape {
             Shape::Cone(s) => s.meet(ray, limit),
             Shape::Torus(s) => s.meet(ray, limit),
             Shape::Triangle(s) => s.meet(ray, limit),
+            Shape::Csg(s) => s.meet(ray, limit),
         }
     }
 
@@ -144,9 +153,19 @@ impl Shape {
             Shape::Torus(s) => s.crossings(ray, out),
             Shape::Cuboid(s) => s.crossings(ray, out),
             Shape::Cone(s) => s.crossings(ray, out),
+            Shape::Csg(s) => s.crossings(ray, out),
             Shape::Plane(_) | Shape::Disc(_) | Shape::Rect(_) | Shape::Triangle(_) => {
                 out.extend(self.meet(ray, f64::MAX));
             }
+        }
+    }
+
+    /// Whether a ray starts inside a closed shape that it meets so many times. The plane's inside is below it.
+    pub fn starts_inside(&self, ray: &LocalRay, n_crossings: usize) -> bool {
+        match self {
+            Shape::Plane(s) => s.starts_below(ray, n_crossings > 0),
+            Shape::Csg(s) => s.starts_inside(ray),
+            _ => n_crossings % 2 == 1,
         }
     }
 
@@ -161,6 +180,7 @@ impl Shape {
             Shape::Cone(s) => s.surface(ray, meet),
             Shape::Torus(s) => s.surface(ray, meet),
             Shape::Triangle(s) => s.surface(meet),
+            Shape::Csg(s) => s.surface(ray, meet).whole,
         }
     }
 
@@ -169,6 +189,7 @@ impl Shape {
         let local = match (self, transform) {
             (Shape::Sphere(s), _) => return s.bounds(transform),
             (Shape::Plane(_), _) => return EVERYTHING,
+            (Shape::Csg(s), _) => return s.bounds(transform),
             (Shape::Disc(s), _) => s.bounds(),
             (Shape::Rect(s), _) => s.bounds(),
             (Shape::Cuboid(s), _) => s.bounds(),

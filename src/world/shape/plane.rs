@@ -30,6 +30,11 @@ impl Plane {
         (t > 0.0 && t <= limit).then(|| Meet::at(t))
     }
 
+    /// Whether a ray starts on the solid side: told by where it goes where it `meets` the plane, by where it is where it does not.
+    pub(super) fn starts_below(&self, ray: &LocalRay, meets: bool) -> bool {
+        if meets { dot(self.normal, ray.direction) > 0.0 } else { self.height(ray.origin) < 0.0 }
+    }
+
     /// True where plain arithmetic already knows that the plane is behind the ray or beyond the limit: so for most rays.
     fn surely_misses(&self, ray: &LocalRay, limit: f64) -> bool {
         let n = self.normal;

@@ -37,7 +37,7 @@ impl Rect {
         }
         let q = f + ray.direction * t;
         let (a, b) = (q.dot(self.dual_a), q.dot(self.dual_b));
-        (a.abs() <= 1.0 && b.abs() <= 1.0).then_some(Meet { t, a, b, face: 0 })
+        (a.abs() <= 1.0 && b.abs() <= 1.0).then_some(Meet { t, a, b, face: 0, part: 0 })
     }
 
     pub(super) fn surface(&self, _ray: &LocalRay, meet: &Meet) -> Surface {

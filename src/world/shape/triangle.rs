@@ -86,7 +86,7 @@ impl Sheared {
         if t.abs() <= depth * NEAR {
             t = self.distance_by_plane(corners)?;
         }
-        (t > 0.0 && t <= limit).then_some(Meet { t, a: v * inverse, b: w * inverse, face: 0 })
+        (t > 0.0 && t <= limit).then_some(Meet { t, a: v * inverse, b: w * inverse, face: 0, part: 0 })
     }
 
     /// Whether a triangle that the ray meets also holds the ray moved by (ε, ε²) across its axis, ε as small as it takes. Of two

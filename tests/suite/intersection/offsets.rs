@@ -4,7 +4,7 @@ use super::{Random, jumble, node, object, placed, ray, sphere, world_of};
 use glam::DVec3;
 use ogee::geometry::mesh::Mesh;
 use ogee::math::Affine;
-use ogee::scene::{Accelerator, Cone, Disc, Node, Object, Rect, Shape, Torus, Triangle};
+use ogee::scene::{Accelerator, Cone, Csg, CsgOp, Disc, Node, Object, Rect, Shape, Torus, Triangle};
 use ogee::world::{RayKind, World};
 use std::sync::Arc;
 
@@ -88,6 +88,40 @@ fn convex_shapes_of_any_size_anywhere_do_not_shadow_themselves() {
         assert_eq!(again, 0, "shape {i} of {tried} tried: {told}");
     }
     assert!(total > 10_000, "{total}");
+}
+
+/// A ball cut by a box, a rod and a plane, all of which it fits into but for their rims, as often flush as not.
+fn cut_ball(random: &mut Random) -> Shape {
+    let flush = if random.next() < 0.5 { 0.8 } else { 0.5 + random.next() };
+    let parts = vec![
+        sphere(DVec3::ZERO, 1.0),
+        Shape::Box(Box::new((DVec3::splat(-flush), DVec3::splat(0.8)))),
+        Shape::Cone(Box::new(Cone { from: -DVec3::Y * flush, to: DVec3::Y * 0.8, radii: [1.0, 0.9] })),
+        Shape::Plane { normal: random.unit(), offset: 0.7 },
+    ];
+    let turn = Affine::rotate(random.unit(), 90.0 * random.next()).then(&Affine::scale(DVec3::splat(0.3)));
+    let placed = parts.into_iter().map(|shape| {
+        let mut part = object(shape);
+        part.transform_by(&turn.then(&turn.inverse()));
+        node(part)
+    });
+    Shape::Csg(Arc::new(Csg { op: CsgOp::Intersection, inverse: false, children: placed.collect() }))
+}
+
+#[test]
+fn solids_put_together_do_not_shadow_themselves() {
+    let mut random = Random(27);
+    let mut total = 0;
+    for i in 0..300 {
+        let shape = cut_ball(&mut random);
+        let transform = wild_transform(&mut random);
+        let middle = transform.point(DVec3::ZERO);
+        let size = transform.linear.x_axis.length().min(transform.linear.y_axis.length());
+        let (again, tried) = self_hits(&placed(shape, transform), middle, size * 2.0, 100, &mut random);
+        total += tried;
+        assert_eq!(again, 0, "shape {i} of {tried} tried: {transform:?}");
+    }
+    assert!(total > 5_000, "{total}");
 }
 
 #[test]

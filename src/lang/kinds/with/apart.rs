@@ -1,6 +1,6 @@
 //! Values taken apart into the properties that build them.
 
-use crate::lang::kinds::{lights, objects, settings, shapes};
+use crate::lang::kinds::{lights, objects, settings, shapes, solids};
 use crate::lang::table::Kind;
 use crate::lang::value::{self, Given, Value};
 use crate::scene::{
@@ -33,6 +33,7 @@ pub fn kind_of(shape: &Shape, asked: impl Fn(&str) -> bool) -> &'static Kind {
         Shape::Triangle(_) => &shapes::TRIANGLE,
         Shape::Mesh(_) => &objects::MESH,
         Shape::Group(_) => &objects::GROUP,
+        Shape::Csg(csg) => solids::kind_of(csg.op),
     }
 }
 
@@ -84,7 +85,7 @@ pub fn shape(shape: &Shape, new: &[Given]) -> Option<Vec<Part>> {
             }
             MeshSource::File { .. } | MeshSource::Inline(_) => return None,
         },
-        Shape::Group(_) => return None,
+        Shape::Group(_) | Shape::Csg(_) => return None,
     })
 }
 

@@ -1,0 +1,98 @@
+//! Solids put together: a tree of the scene's nodes to a tree of parts in one space.
+
+use super::{Around, Lowering, shapes};
+use crate::diag::{Code, Diagnostic, Span};
+use crate::scene::{self, CsgOp, Node, Object, Shape, solid_fault};
+use crate::world::aggregate::Aggregate;
+use crate::world::shape::Csg;
+use crate::world::shape::csg::{Part, Solid};
+use std::collections::HashMap;
+use std::sync::Arc;
+
+/// Solids nested deeper than this are left out: the language allows no deeper groups.
+const MAX_DEPTH: usize = 1024;
+
+/// What was put together already, by the address of the scene's; that is kept so that no other takes its place. None where it
+/// cannot be used, which is said once.
+#[derive(Default)]
+pub(super) struct Solids {
+    by_address: HashMap<*const scene::Csg, (Option<Arc<Csg>>, Arc<scene::Csg>)>,
+    /// Whether a mesh is closed, by its aggregate.
+    closed: HashMap<u32, bool>,
+}
+
+impl Lowering<'_> {
+    /// The solid; none, said, where it cannot be made or where nothing is left of it.
+    pub(super) fn csg(&mut self, csg: &Arc<scene::Csg>, span: Span) -> Option<Arc<Csg>> {
+        if let Some((known, _)) = self.solids.by_address.get(&Arc::as_ptr(csg)) {
+            return known.clone();
+        }
+        let made =
+            self.parts(&csg.children, &Around::TOP, 0).map(|parts| Csg::new(csg.op, csg.inverse, parts));
+        let made = made.filter(|made| self.has_points(made, csg, span)).map(Arc::new);
+        self.solids.by_address.insert(Arc::as_ptr(csg), (made.clone(), Arc::clone(csg)));
+        made
+    }
+
+    /// Says where nothing can be left.
+    fn has_points(&mut self, made: &Csg, csg: &scene::Csg, span: Span) -> bool {
+        let is_empty = made.bounds(None).is_empty();
+        if is_empty && !csg.children.is_empty() {
+            let message = format!("nothing is left of this {}", csg.op.word());
+            let hint = "the boxes around its solids do not overlap: move them together";
+            self.sink.push(Diagnostic::new(Code::EmptySolid, span, message).hint(hint));
+        }
+        !is_empty
+    }
+
+    fn parts(&mut self, nodes: &[Node], around: &Around, depth: usize) -> Option<Vec<Part>> {
+        let parts: Vec<Option<Part>> = nodes.iter().map(|node| self.part(node, around, depth)).collect();
+        parts.into_iter().collect()
+    }
+
+    fn part(&mut self, node: &Node, around: &Around, depth: usize) -> Option<Part> {
+        if let Some(fault) = solid_fault(node) {
+            self.sink.push(fault);
+            return None;
+        }
+        let Node::Object(object) = node else { return None };
+        if depth > MAX_DEPTH {
+            let message = format!("solids are nested more than {MAX_DEPTH} deep");
+            self.sink.push(Diagnostic::new(Code::BadGeometry, object.span, message));
+            return None;
+        }
+        let inside = Around {
+            transform: around.place(object.transform.clone()).map(|t| *t),
+            material: object.material.clone().map_or(around.material, |m| self.materials.number(m)),
+            ..around.clone()
+        };
+        match &object.shape {
+            Shape::Group(nodes) => {
+                Some(Part::Whole(CsgOp::Union, false, self.parts(nodes, &inside, depth + 1)?))
+            }
+            Shape::Csg(csg) => {
+                Some(Part::Whole(csg.op, csg.inverse, self.parts(&csg.children, &inside, depth + 1)?))
+            }
+            _ => {
+                let transform = inside.transform.map(Box::new);
+                Some(Part::Solid(self.solid(object)?, transform, inside.material, object.span))
+            }
+        }
+    }
+
+    fn solid(&mut self, object: &Object) -> Option<Solid> {
+        let Shape::Mesh(source) = &object.shape else {
+            let shape = shapes::convert(object.shape.clone());
+            let fault = |text| Diagnostic::new(Code::BadGeometry, object.span, text);
+            return shape.map_err(|text| self.sink.push(fault(text))).ok().map(Solid::Shape);
+        };
+        let number = self.mesh(Arc::clone(source), object.span)?;
+        let Aggregate::Mesh(mesh) = &self.aggregates[number as usize] else { return None };
+        let (shape, materials) = (Arc::clone(&mesh.shape), Arc::clone(&mesh.materials));
+        if !*self.solids.closed.entry(number).or_insert_with(|| shape.mesh.is_closed()) {
+            self.sink.push(scene::open_mesh(object.span));
+            return None;
+        }
+        Some(Solid::Mesh(shape, materials))
+    }
+}
