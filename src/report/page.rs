@@ -1,6 +1,6 @@
-//! Rows as a page: a table and a plot for each component, from the JSON lines alone.
+//! Rows as a page: bars and prices first, then a table for each case set and a plot for each component, from the JSON lines alone.
 
-use super::plot::{Point, frontier, scatter};
+use super::plot::{Panel, Point, frontier, scatter};
 use super::row::{Machine, Row};
 use std::fmt::Write;
 
@@ -12,25 +12,112 @@ pub struct Page {
     pub text: String,
 }
 
-/// The whole report: `index.md` and a plot for each component and case.
-pub fn render(machine: &Machine, rows: &[Row], command: &str) -> Vec<Page> {
-    let mut index = format!(
-        "# Speed against error\n\nMade by `{command}` (version {}, {} mode) on {}, {}; load {:.1} at the start. Ratios are taken pair by pair against the first \
-         variant of each component in one run; absolute nanoseconds are of this machine alone. The default is starred. What is missed or spurious is counted, \
-         never averaged into an error. Each largest error has the input that made it, as hexadecimal floats.\n",
-        machine.version, machine.mode, machine.cpu, machine.target, machine.load
-    );
+/// The whole report: `index.md` and a plot for each component.
+pub fn render(machine: &Machine, rows: &[Row]) -> Vec<Page> {
+    let mut index = head(machine);
+    bars(&mut index, rows);
+    prices(&mut index, rows);
     let mut pages = Vec::new();
     for component in names(rows.iter().map(|r| &r.component)) {
-        let _ = write!(index, "\n## {component}\n");
         let of_component: Vec<&Row> = rows.iter().filter(|r| r.component == component).collect();
-        for case in names(of_component.iter().map(|r| &r.case)) {
-            let of_case: Vec<&Row> = of_component.iter().copied().filter(|r| r.case == case).collect();
-            section(&mut index, &mut pages, &component, &case, &of_case);
+        let _ = write!(index, "\n## {}\n", capital(&component));
+        let cases = by_case(&of_component);
+        plot(&mut index, &mut pages, &component, &cases);
+        for (case, rows) in &cases {
+            table(&mut index, case, rows);
+            note_default(&mut index, rows);
         }
+        reproduce(&mut index, &of_component);
     }
     pages.insert(0, Page { name: "index.md".into(), text: index });
     pages
+}
+
+fn head(machine: &Machine) -> String {
+    let commit =
+        if machine.commit.is_empty() { String::new() } else { format!(", commit {}", machine.commit) };
+    format!(
+        "# Speed against error\n\n\
+         `ogee bench kernels --{mode}` measured it, `ogee bench report` wrote this page from [results](results) alone. Version {version}{commit}, {build}, {cpu}, \
+         {target}; load {load:.1} at the start; seed {seed}.\n\n\
+         Every variant answers the same inputs. Errors are against double-double arithmetic, exact rationals or mpmath, as each component's source says; \
+         what is missed or made up is counted and never averaged into an error. Times are medians of blocks taken in turn, ± the median \
+         deviation; a ratio is the median of ratios taken block by block against the first variant, with its 95 % bootstrap interval. \
+         Nanoseconds are of this machine under its load; ratios and counts last longer.\n\n\
+         In the plots ★ is the default, the line joins what nothing beats in both cost and error, and a hollow mark has wrong answers, however small \
+         the error of the rest.\n",
+        mode = machine.mode,
+        version = machine.version,
+        build = machine.build,
+        cpu = machine.cpu,
+        target = machine.target,
+        load = machine.load,
+        seed = machine.seed,
+    )
+}
+
+/// What the defaults promise, and where they do not keep it.
+fn bars(index: &mut String, rows: &[Row]) {
+    let held: Vec<&Row> = rows.iter().filter(|r| r.bar.is_some()).collect();
+    let broken: Vec<&&Row> = held.iter().filter(|r| !r.within_bar()).collect();
+    let _ = write!(
+        index,
+        "\n## Bars\n\n{} of {} bars of the defaults are kept.",
+        held.len() - broken.len(),
+        held.len()
+    );
+    index.push_str(if broken.is_empty() { " No failure is known.\n" } else { " Known failures:\n\n" });
+    for row in broken {
+        let _ = writeln!(
+            index,
+            "- {}, {}: {} {} against a bar of {}; {} missed, {} spurious, {} not finite.",
+            row.component,
+            row.case,
+            short(row.error_max),
+            row.error_unit,
+            short(row.bar.unwrap_or(0.0)),
+            row.missed,
+            row.spurious,
+            row.not_finite
+        );
+    }
+}
+
+/// Where the default is slower than the first variant, and by how much.
+fn prices(index: &mut String, rows: &[Row]) {
+    let timed: Vec<&Row> = rows.iter().filter(|r| r.default && r.ns_median > 0.0).collect();
+    if timed.is_empty() {
+        return;
+    }
+    index.push_str(
+        "\n## What the defaults cost\n\nTime over that of the first variant, which is the textbook's, over all case sets; and what that one gets wrong.\n\n\
+         | component | default | ratio, least … largest | the first variant's wrong answers | its largest error |\n|---|---|---|---|---|\n",
+    );
+    for component in names(timed.iter().map(|r| &r.component)) {
+        let own: Vec<&&Row> = timed.iter().filter(|r| r.component == component).collect();
+        let (least, most) =
+            own.iter().fold((f64::INFINITY, 0.0f64), |(l, m), r| (l.min(r.ratio), m.max(r.ratio)));
+        let firsts: Vec<&Row> = own
+            .iter()
+            .filter_map(|r| rows.iter().find(|f| f.component == component && f.case == r.case))
+            .collect();
+        let wrong: usize = firsts.iter().map(|r| wrong(r)).sum();
+        let n: usize = firsts.iter().map(|r| r.n).sum();
+        let worst = firsts.iter().max_by(|a, b| a.error_max.total_cmp(&b.error_max));
+        let worst =
+            worst.map_or(String::new(), |r| format!("{} {} ({})", short(r.error_max), r.error_unit, r.case));
+        let _ = writeln!(
+            index,
+            "| {component} | {} | {} … {} | {wrong} of {n} | {worst} |",
+            own[0].variant,
+            short(least),
+            short(most)
+        );
+    }
+}
+
+fn wrong(row: &Row) -> usize {
+    row.missed + row.spurious + row.not_finite
 }
 
 /// The different names, in the order they first come.
@@ -44,76 +131,124 @@ fn names<'a>(all: impl Iterator<Item = &'a String>) -> Vec<String> {
     names
 }
 
-fn section(index: &mut String, pages: &mut Vec<Page>, component: &str, case: &str, rows: &[&Row]) {
-    let unit = rows.first().map_or("", |r| r.error_unit.as_str());
+fn by_case<'a>(rows: &[&'a Row]) -> Vec<(String, Vec<&'a Row>)> {
+    let cases = names(rows.iter().map(|r| &r.case)).into_iter();
+    cases.map(|case| (case.clone(), rows.iter().copied().filter(|r| r.case == case).collect())).collect()
+}
+
+fn table(index: &mut String, case: &str, rows: &[&Row]) {
+    let n = rows.first().map_or(0, |r| r.n);
+    let unit = rows.first().map_or(String::new(), |r| r.error_unit.replace('|', "\\|"));
+    let work = rows.first().map_or("", |r| r.work_unit.as_str());
+    let (work_head, work_rule) =
+        if work.is_empty() { (String::new(), "") } else { (format!(" {work} |"), "---|") };
     let _ = write!(
         index,
-        "\n### {case}\n\n| variant | ns | ratio (95 %) | largest error ({unit}) | 99 % | mean | missed | spurious | not finite | work | input of the largest error |\n\
-         |---|---|---|---|---|---|---|---|---|---|---|\n"
+        "\n### {}\n\n{n} inputs.\n\n| variant | ns | ratio (95 %) | largest error, {unit} | 99 % | mean | missed | spurious | not finite |{work_head}\n\
+         |---|---|---|---|---|---|---|---|---|{work_rule}\n",
+        capital(case)
     );
     for row in rows {
+        let star = if row.default { " ★" } else { "" };
+        let work = if work.is_empty() { String::new() } else { format!(" {} |", short(row.work)) };
         let _ = writeln!(
             index,
-            "| {}{} | {} ± {} | {} ({} … {}) | {} | {} | {} | {} | {} | {} | {} | `{}` |",
+            "| {}{star} | {} | {} | {} | {} | {} |{work}",
             row.variant,
-            if row.default { " ★" } else { "" },
-            short(row.ns_median),
-            short(row.ns_mad),
-            short(row.ratio),
-            short(row.ratio_ci[0]),
-            short(row.ratio_ci[1]),
-            short(row.error_max),
-            short(row.error_p99),
-            short(row.error_mean),
-            row.missed,
-            row.spurious,
+            pair(row.ns_median, row.ns_mad),
+            ratio(row),
+            [row.error_max, row.error_p99, row.error_mean].map(short).join(" | "),
+            [row.missed, row.spurious].map(|n| n.to_string()).join(" | "),
             row.not_finite,
-            if row.work_unit.is_empty() {
-                String::new()
-            } else {
-                format!("{} {}", short(row.work), row.work_unit)
-            },
-            row.worst_input,
         );
-    }
-    let points: Vec<Point> = rows
-        .iter()
-        .filter(|r| r.ns_median > 0.0)
-        .map(|r| Point {
-            cost: r.ns_median,
-            error: r.error_max,
-            label: r.variant.clone(),
-            default: r.default,
-        })
-        .collect();
-    if points.len() > 1 {
-        let name = format!("{}-{}.svg", slug(component), slug(case));
-        let _ = write!(index, "\n![{component}, {case}]({name})\n");
-        note_default(index, &points);
-        pages.push(Page {
-            text: scatter(
-                &format!("{component}: {case}"),
-                "ns per call",
-                &format!("largest error, {unit}"),
-                &points,
-            ),
-            name,
-        });
     }
 }
 
-/// A default off the frontier is said, so that the page cannot hide it.
-fn note_default(index: &mut String, points: &[Point]) {
-    let on = frontier(points);
+fn pair(median: f64, deviation: f64) -> String {
+    if median > 0.0 { format!("{} ± {}", short(median), short(deviation)) } else { "–".into() }
+}
+
+fn ratio(row: &Row) -> String {
+    if row.ns_median > 0.0 {
+        format!("{} ({} … {})", short(row.ratio), short(row.ratio_ci[0]), short(row.ratio_ci[1]))
+    } else {
+        "–".into()
+    }
+}
+
+/// One plot for a component: a panel for each case set whose variants have times.
+fn plot(index: &mut String, pages: &mut Vec<Page>, component: &str, cases: &[(String, Vec<&Row>)]) {
+    let panels: Vec<Panel> = cases.iter().filter_map(|(case, rows)| panel(case, rows)).collect();
+    if panels.is_empty() {
+        return;
+    }
+    let name = format!("{}.svg", slug(component));
+    let _ = write!(index, "\n![{component}: cost against error]({name})\n");
+    pages.push(Page { text: scatter(&capital(component), &panels), name });
+}
+
+fn panel(case: &str, rows: &[&Row]) -> Option<Panel> {
+    let points = points(rows);
+    let unit = &rows.first()?.error_unit;
+    let error_label = if counts_alone(rows) {
+        "share of wrong answers".to_owned()
+    } else {
+        format!("largest error, {unit}")
+    };
+    let panel = Panel { title: capital(case), cost_label: "ns a call".into(), error_label, points };
+    (panel.points.len() > 1).then_some(panel)
+}
+
+/// True where no variant has any error but wrong answers.
+fn counts_alone(rows: &[&Row]) -> bool {
+    rows.iter().all(|r| r.error_max == 0.0) && rows.iter().any(|r| wrong(r) > 0)
+}
+
+fn points(rows: &[&Row]) -> Vec<Point> {
+    let shares = counts_alone(rows);
+    let point = |r: &&Row| Point {
+        cost: r.ns_median,
+        error: if shares { wrong(r) as f64 / r.n.max(1) as f64 } else { r.error_max },
+        wrong: wrong(r),
+        label: r.variant.clone(),
+        default: r.default,
+    };
+    rows.iter().filter(|r| r.ns_median > 0.0).map(point).collect()
+}
+
+/// A default off the frontier is said and why it is the default, so that the page cannot hide it.
+fn note_default(index: &mut String, rows: &[&Row]) {
+    let points = points(rows);
+    let on = frontier(&points);
     for (i, point) in points.iter().enumerate() {
         if point.default && !on.contains(&i) {
-            let _ = write!(index, "\nThe default, {}, is not on the frontier of this case.\n", point.label);
+            let note = rows.iter().find(|r| r.default).map_or("", |r| r.note.as_str());
+            let why =
+                if note.is_empty() { String::new() } else { format!(" It is the default because {note}.") };
+            let _ = write!(index, "\nThe default, {}, is not on the frontier here.{why}\n", point.label);
         }
     }
 }
 
+/// A line for each variant that gives its largest error again, and its first wrong answer.
+fn reproduce(index: &mut String, rows: &[&Row]) {
+    index.push_str("\n<details><summary>The inputs of the largest errors, and of the first wrong answers</summary>\n\n```sh\n");
+    for row in rows {
+        for input in [&row.worst_input, &row.failed_input] {
+            if !input.is_empty() {
+                let _ = writeln!(
+                    index,
+                    "ogee bench repro '{}' '{}' '{}' {input}",
+                    row.component, row.case, row.variant
+                );
+            }
+        }
+    }
+    index.push_str("```\n\n</details>\n");
+}
+
 /// Three significant digits.
-fn short(x: f64) -> String {
+pub fn short(x: f64) -> String {
     if x == 0.0 {
         "0".into()
     } else if (0.001..100_000.0).contains(&x.abs()) {
@@ -124,7 +259,13 @@ fn short(x: f64) -> String {
     }
 }
 
-fn slug(name: &str) -> String {
+fn capital(text: &str) -> String {
+    let mut letters = text.chars();
+    letters.next().map_or(String::new(), |first| first.to_uppercase().chain(letters).collect())
+}
+
+/// A name for a file.
+pub fn slug(name: &str) -> String {
     let dashed: String =
         name.to_lowercase().chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '-' }).collect();
     dashed.split('-').filter(|part| !part.is_empty()).collect::<Vec<_>>().join("-")
@@ -140,18 +281,35 @@ mod tests {
             case: "near a triple root".into(),
             variant: variant.into(),
             ns_median: ns,
+            ratio: ns,
             error_max: error,
+            worst_input: "0x1p+0".into(),
             default,
             ..Row::default()
         }
     }
 
     #[test]
-    fn a_default_off_the_frontier_is_said() {
-        let pages =
-            render(&Machine::default(), &[row("fast", 1.0, 1.0, false), row("slow", 2.0, 2.0, true)], "x");
-        assert!(pages[0].text.contains("slow, is not on the frontier"));
-        assert_eq!(pages[1].name, "cubic-evaluation-near-a-triple-root.svg");
+    fn a_default_off_the_frontier_is_said_with_its_reason() {
+        let slow = Row { note: "it is sure".into(), ..row("slow", 2.0, 2.0, true) };
+        let pages = render(&Machine::default(), &[row("fast", 1.0, 1.0, false), slow]);
+        assert!(
+            pages[0]
+                .text
+                .contains("slow, is not on the frontier here. It is the default because it is sure.")
+        );
+        assert!(
+            pages[0].text.contains("ogee bench repro 'cubic evaluation' 'near a triple root' 'fast' 0x1p+0")
+        );
+        assert_eq!(pages[1].name, "cubic-evaluation.svg");
+    }
+
+    #[test]
+    fn a_broken_bar_is_a_known_failure_and_the_price_is_told() {
+        let broken = Row { bar: Some(1.0), ..row("slow", 2.0, 2.0, true) };
+        let text = &render(&Machine::default(), &[row("fast", 1.0, 1.0, false), broken])[0].text;
+        assert!(text.contains("0 of 1 bars") && text.contains("Known failures:"), "{text}");
+        assert!(text.contains("| cubic evaluation | slow | 2.00 … 2.00 |"), "{text}");
     }
 
     #[test]

@@ -1,31 +1,44 @@
-//! A scatter of cost against error on logarithmic axes, as SVG: every variant a labelled point, the Pareto frontier joined, the
-//! default starred.
+//! Scatters of cost against error on logarithmic axes, as SVG: one panel a case set, every variant a labelled point, the Pareto frontier
+//! joined, the default starred, a variant with wrong answers hollow and off the frontier.
 
+mod axis;
+mod labels;
+
+use axis::Axis;
+use labels::{Labels, Rect};
 use std::fmt::Write;
 
-/// A variant on a plot.
+/// A variant on a panel.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Point {
     /// Cost, > 0; left is better.
     pub cost: f64,
-    /// Error, ≥ 0; low is better. 0 is drawn on the floor.
+    /// Error, ≥ 0; low is better. 0 is drawn on a floor of its own.
     pub error: f64,
+    /// Answers missed, spurious or not finite.
+    pub wrong: usize,
     /// What to write beside it.
     pub label: String,
     /// Starred.
     pub default: bool,
 }
 
-const WIDTH: f64 = 640.0;
-const HEIGHT: f64 = 400.0;
-const LEFT: f64 = 70.0;
-const RIGHT: f64 = 150.0;
-const TOP: f64 = 34.0;
-const BOTTOM: f64 = 48.0;
+/// The variants on one case set.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Panel {
+    /// The case set.
+    pub title: String,
+    /// What the cost is.
+    pub cost_label: String,
+    /// What the error is.
+    pub error_label: String,
+    /// The variants.
+    pub points: Vec<Point>,
+}
 
-/// The points that no other beats in both cost and error, by rising cost.
+/// The points that no other beats in both cost and error, by rising cost; those with wrong answers are none of them.
 pub fn frontier(points: &[Point]) -> Vec<usize> {
-    let mut order: Vec<usize> = (0..points.len()).collect();
+    let mut order: Vec<usize> = (0..points.len()).filter(|&i| points[i].wrong == 0).collect();
     order.sort_by(|&a, &b| {
         let (p, q) = (&points[a], &points[b]);
         p.cost.total_cmp(&q.cost).then(p.error.total_cmp(&q.error)).then(a.cmp(&b))
@@ -39,136 +52,112 @@ pub fn frontier(points: &[Point]) -> Vec<usize> {
     order
 }
 
-/// A logarithmic axis of whole decades around some numbers.
-struct Axis {
-    from: i32,
-    to: i32,
-    low: f64,
-    high: f64,
-}
+const WIDTH: f64 = 430.0;
+const HEIGHT: f64 = 300.0;
+const COLUMNS: usize = 2;
+/// Room around a panel's axes.
+const LEFT: f64 = 66.0;
+const RIGHT: f64 = 16.0;
+const TOP: f64 = 30.0;
+const BOTTOM: f64 = 46.0;
 
-impl Axis {
-    fn around(numbers: impl Iterator<Item = f64> + Clone, low: f64, high: f64) -> Axis {
-        let positive = numbers.filter(|x| *x > 0.0 && x.is_finite());
-        let least = positive.clone().fold(f64::INFINITY, f64::min);
-        let most = positive.fold(0.0, f64::max);
-        let decade = |x: f64| crate::math::elementary::log10(x);
-        let (from, to) =
-            if most > 0.0 { (decade(least).floor() as i32, decade(most).ceil() as i32) } else { (-1, 1) };
-        Axis { from, to: to.max(from + 1), low, high }
-    }
-
-    fn at(&self, x: f64) -> f64 {
-        let decades = if x > 0.0 { crate::math::elementary::log10(x) } else { f64::from(self.from) };
-        let part = ((decades - f64::from(self.from)) / f64::from(self.to - self.from)).clamp(0.0, 1.0);
-        self.low + (self.high - self.low) * part
-    }
-
-    /// Whole decades, at most about eight of them.
-    fn ticks(&self) -> impl Iterator<Item = i32> + use<> {
-        let step = ((self.to - self.from) / 8 + 1) as usize;
-        (self.from..=self.to).step_by(step)
-    }
-}
-
-/// The plot as an SVG file.
-pub fn scatter(title: &str, cost_label: &str, error_label: &str, points: &[Point]) -> String {
-    let x = Axis::around(points.iter().map(|p| p.cost), LEFT, WIDTH - RIGHT);
-    let y = Axis::around(points.iter().map(|p| p.error), HEIGHT - BOTTOM, TOP);
+/// All panels of a component as one SVG file.
+pub fn scatter(title: &str, panels: &[Panel]) -> String {
+    let columns = panels.len().clamp(1, COLUMNS);
+    let rows = panels.len().div_ceil(columns);
+    let (width, height) = (WIDTH * columns as f64, HEIGHT * rows as f64 + 34.0);
     let mut svg = format!(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{WIDTH}\" height=\"{HEIGHT}\" viewBox=\"0 0 {WIDTH} {HEIGHT}\" \
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" viewBox=\"0 0 {width} {height}\" \
          font-family=\"sans-serif\" font-size=\"11\">\n<rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n"
     );
-    text(&mut svg, LEFT, 18.0, "start", 14, title);
-    grid(&mut svg, &x, &y);
-    text(&mut svg, (LEFT + WIDTH - RIGHT) / 2.0, HEIGHT - 10.0, "middle", 11, cost_label);
-    let middle = (TOP + HEIGHT - BOTTOM) / 2.0;
-    let _ = writeln!(
-        svg,
-        "<text x=\"16\" y=\"{middle:.1}\" text-anchor=\"middle\" transform=\"rotate(-90 16 {middle:.1})\">{}</text>",
-        escaped(error_label)
-    );
-    let line: Vec<String> = frontier(points)
-        .iter()
-        .map(|&i| format!("{:.1},{:.1}", x.at(points[i].cost), y.at(points[i].error)))
-        .collect();
-    let _ = writeln!(
-        svg,
-        "<polyline points=\"{}\" fill=\"none\" stroke=\"#4477aa\" stroke-width=\"1.5\"/>",
-        line.join(" ")
-    );
-    let mut taken: Vec<(f64, f64)> = Vec::new();
-    for point in points {
-        mark(&mut svg, &mut taken, x.at(point.cost), y.at(point.error), point);
+    text(&mut svg, (14.0, 22.0), "start", "font-size=\"15\" font-weight=\"bold\"", title);
+    for (i, panel) in panels.iter().enumerate() {
+        let (x, y) = (WIDTH * (i % columns) as f64, 34.0 + HEIGHT * (i / columns) as f64);
+        let _ = writeln!(svg, "<g transform=\"translate({x} {y})\">");
+        draw(&mut svg, panel);
+        svg.push_str("</g>\n");
     }
     svg.push_str("</svg>\n");
     svg
 }
 
+fn draw(svg: &mut String, panel: &Panel) {
+    let points = &panel.points;
+    let x = Axis::fine(points.iter().map(|p| p.cost), LEFT, WIDTH - RIGHT);
+    let y = Axis::decades(points.iter().map(|p| p.error), HEIGHT - BOTTOM, TOP);
+    text(svg, (LEFT, TOP - 10.0), "start", "font-size=\"12\" font-weight=\"bold\"", &panel.title);
+    grid(svg, &x, &y);
+    text(svg, ((LEFT + WIDTH - RIGHT) / 2.0, HEIGHT - 10.0), "middle", "", &panel.cost_label);
+    let middle = (TOP + HEIGHT - BOTTOM) / 2.0;
+    let turned = format!("transform=\"rotate(-90 14 {middle:.1})\"");
+    text(svg, (14.0, middle), "middle", &turned, &panel.error_label);
+    let place = |p: &Point| (x.at(p.cost), y.at(p.error));
+    let line: Vec<(f64, f64)> = frontier(points).iter().map(|&i| place(&points[i])).collect();
+    let path: Vec<String> = line.iter().map(|(x, y)| format!("{x:.1},{y:.1}")).collect();
+    let path = path.join(" ");
+    let _ =
+        writeln!(svg, "<polyline points=\"{path}\" fill=\"none\" stroke=\"#4477aa\" stroke-width=\"1.5\"/>");
+    let area = Rect { left: LEFT, top: TOP, right: WIDTH - 2.0, bottom: HEIGHT - BOTTOM };
+    let mut labels = Labels::new(area, points.iter().map(place), &line);
+    for point in points {
+        mark(svg, &mut labels, place(point), point);
+    }
+}
+
 fn grid(svg: &mut String, x: &Axis, y: &Axis) {
-    let bottom = HEIGHT - BOTTOM;
-    for decade in x.ticks() {
-        let at = x.at(10f64.powi_exact(decade));
-        let _ = writeln!(svg, "<path d=\"M{at:.1} {TOP}V{bottom}\" stroke=\"#ddd\"/>");
-        text(svg, at, bottom + 16.0, "middle", 11, &power(decade));
+    let (bottom, right) = (HEIGHT - BOTTOM, WIDTH - RIGHT);
+    for (at, name) in x.ticks() {
+        let _ = writeln!(svg, "<path d=\"M{at:.1} {TOP}V{bottom}\" stroke=\"#e4e4e4\"/>");
+        text(svg, (at, bottom + 15.0), "middle", "", &name);
     }
-    for decade in y.ticks() {
-        let at = y.at(10f64.powi_exact(decade));
-        let _ = writeln!(svg, "<path d=\"M{LEFT} {at:.1}H{}\" stroke=\"#ddd\"/>", WIDTH - RIGHT);
-        text(svg, LEFT - 6.0, at + 4.0, "end", 11, &power(decade));
+    for (at, name) in y.ticks() {
+        let _ = writeln!(svg, "<path d=\"M{LEFT} {at:.1}H{right}\" stroke=\"#e4e4e4\"/>");
+        text(svg, (LEFT - 5.0, at + 4.0), "end", "", &name);
     }
+    let _ = writeln!(svg, "<path d=\"M{LEFT} {TOP}V{bottom}H{right}\" fill=\"none\" stroke=\"#888\"/>");
 }
 
-/// Powers of ten without the platform's library.
-trait PowiExact {
-    fn powi_exact(self, n: i32) -> f64;
-}
-
-impl PowiExact for f64 {
-    fn powi_exact(self, n: i32) -> f64 {
-        crate::math::elementary::powi(self, n)
-    }
-}
-
-/// A point with its label, moved down where another label stands.
-fn mark(svg: &mut String, taken: &mut Vec<(f64, f64)>, x: f64, y: f64, point: &Point) {
-    let colour = if point.default { "#cc3311" } else { "#222" };
+/// A point with its label, and a line to it where the label had to step aside.
+fn mark(svg: &mut String, labels: &mut Labels, (x, y): (f64, f64), point: &Point) {
+    let colour = if point.default { "#cc3311" } else { "#222222" };
+    let fill = if point.wrong > 0 { "white" } else { colour };
+    let shape = format!("fill=\"{fill}\" stroke=\"{colour}\" stroke-width=\"1.4\"");
     if point.default {
-        let star: Vec<String> = (0..10)
-            .map(|k| {
-                let radius = if k % 2 == 0 { 8.0 } else { 3.4 };
-                let (s, c) =
-                    crate::math::elementary::sin_cos(std::f64::consts::PI * (f64::from(k) / 5.0 - 0.5));
-                format!("{:.1},{:.1}", x + radius * c, y + radius * s)
-            })
-            .collect();
-        let _ = writeln!(svg, "<polygon points=\"{}\" fill=\"{colour}\"/>", star.join(" "));
+        let _ = writeln!(svg, "<polygon points=\"{}\" {shape}/>", star(x, y));
     } else {
-        let _ = writeln!(svg, "<circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"4\" fill=\"{colour}\"/>");
+        let _ = writeln!(svg, "<circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"3.6\" {shape}/>");
     }
-    let mut at = y + 4.0;
-    while taken.iter().any(|(tx, ty)| (tx - x).abs() < 110.0 && (ty - at).abs() < 12.0) {
-        at += 12.0;
+    let name = match point.wrong {
+        0 => point.label.clone(),
+        n => format!("{}: {n} wrong", point.label),
+    };
+    let label = labels.place((x, y), &name);
+    if label.aside {
+        let (end, level) = (label.x, label.y - 4.0);
+        let _ = writeln!(
+            svg,
+            "<path d=\"M{x:.1} {y:.1}L{end:.1} {level:.1}\" stroke=\"#bbb\" stroke-width=\"0.8\"/>"
+        );
     }
-    taken.push((x, at));
-    let _ = writeln!(
-        svg,
-        "<text x=\"{:.1}\" y=\"{at:.1}\" fill=\"{colour}\">{}</text>",
-        x + 10.0,
-        escaped(&point.label)
-    );
+    text(svg, (label.x, label.y), label.anchor, &format!("fill=\"{colour}\""), &name);
 }
 
-fn text(svg: &mut String, x: f64, y: f64, anchor: &str, size: u32, what: &str) {
+/// Corners of a five-pointed star.
+fn star(x: f64, y: f64) -> String {
+    let corner = |k: i32| {
+        let radius = if k % 2 == 0 { 7.5 } else { 3.2 };
+        let (s, c) = crate::math::elementary::sin_cos(std::f64::consts::PI * (f64::from(k) / 5.0 - 0.5));
+        format!("{:.1},{:.1}", x + radius * c, y + radius * s)
+    };
+    (0..10).map(corner).collect::<Vec<_>>().join(" ")
+}
+
+fn text(svg: &mut String, (x, y): (f64, f64), anchor: &str, more: &str, what: &str) {
     let _ = writeln!(
         svg,
-        "<text x=\"{x:.1}\" y=\"{y:.1}\" text-anchor=\"{anchor}\" font-size=\"{size}\">{}</text>",
+        "<text x=\"{x:.1}\" y=\"{y:.1}\" text-anchor=\"{anchor}\" {more}>{}</text>",
         escaped(what)
     );
-}
-
-fn power(decade: i32) -> String {
-    if (-2..=3).contains(&decade) { format!("{}", 10f64.powi_exact(decade)) } else { format!("1e{decade}") }
 }
 
 fn escaped(what: &str) -> String {
@@ -180,24 +169,30 @@ mod tests {
     use super::*;
 
     fn point(cost: f64, error: f64) -> Point {
-        Point { cost, error, label: format!("{cost}"), default: false }
+        Point { cost, error, wrong: 0, label: format!("{cost}"), default: false }
+    }
+
+    fn panel(points: Vec<Point>) -> Panel {
+        let label = || "ns".to_owned();
+        Panel { title: "a < b".into(), cost_label: label(), error_label: label(), points }
     }
 
     #[test]
-    fn what_is_beaten_in_both_is_off_the_frontier() {
-        let points = [point(1.0, 1.0), point(2.0, 0.1), point(3.0, 0.5), point(4.0, 0.0), point(2.0, 0.2)];
+    fn what_is_beaten_in_both_or_answers_wrongly_is_off_the_frontier() {
+        let mut points =
+            vec![point(1.0, 1.0), point(2.0, 0.1), point(3.0, 0.5), point(4.0, 0.0), point(2.0, 0.2)];
         assert_eq!(frontier(&points), [0, 1, 3]);
+        points[1].wrong = 1;
+        assert_eq!(frontier(&points), [0, 4, 3]);
     }
 
     #[test]
     fn a_plot_has_every_label_and_no_nan() {
-        let svg =
-            scatter("a < b", "ns", "ulp", &[point(1.0, 0.0), Point { default: true, ..point(50.0, 1e-9) }]);
-        assert!(
-            svg.contains("a &lt; b")
-                && svg.contains(">50<")
-                && !svg.contains("NaN")
-                && svg.contains("<polygon")
-        );
+        let points = vec![point(1.0, 0.0), Point { default: true, wrong: 7, ..point(50.0, 1e-9) }];
+        let svg = scatter("title", &[panel(points), panel(vec![point(3.0, 0.0)]), panel(Vec::new())]);
+        for part in ["a &lt; b", ">50: 7 wrong<", "<polygon"] {
+            assert!(svg.contains(part), "{part}");
+        }
+        assert!(!svg.contains("NaN") && !svg.contains("inf"));
     }
 }

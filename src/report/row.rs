@@ -6,6 +6,8 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Row {
+    /// Its place among all rows of a run, so that files can be read in any order.
+    pub order: usize,
     /// What is computed: "cubic evaluation".
     pub component: String,
     /// How: "de Casteljau".
@@ -32,6 +34,18 @@ pub struct Row {
     pub not_finite: usize,
     /// The input of the largest error, as hexadecimal floats.
     pub worst_input: String,
+    /// The first input where something was missed or spurious, as hexadecimal floats.
+    #[serde(skip_serializing_if = "String::is_empty")]
+    pub failed_input: String,
+    /// What the variant answered, where it was asked for one input alone.
+    #[serde(skip_serializing_if = "String::is_empty")]
+    pub answer: String,
+    /// What the default's largest error must not be above, with nothing missed, spurious or not finite.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub bar: Option<f64>,
+    /// A sentence on the variant: why it is the default though others are on the frontier, or what it is known to fail.
+    #[serde(skip_serializing_if = "String::is_empty")]
+    pub note: String,
     /// Median nanoseconds per call.
     pub ns_median: f64,
     /// Median absolute deviation of the blocks.
@@ -46,6 +60,29 @@ pub struct Row {
     pub work_unit: String,
 }
 
+impl Row {
+    /// A row of a variant before anything is measured.
+    pub(crate) fn of(subject: &super::trial::Subject, variant: &str, default: bool, note: &str) -> Row {
+        Row {
+            component: subject.component.into(),
+            case: subject.case.into(),
+            variant: variant.into(),
+            default,
+            note: note.into(),
+            error_unit: subject.unit.into(),
+            work_unit: subject.work.into(),
+            bar: subject.bar.filter(|_| default),
+            ..Row::default()
+        }
+    }
+
+    /// False where a bar is set and passed.
+    pub fn within_bar(&self) -> bool {
+        let clean = self.missed + self.spurious + self.not_finite == 0;
+        self.bar.is_none_or(|bar| clean && self.error_max <= bar)
+    }
+}
+
 /// Where and with what the rows were measured; the first line of a result file.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
@@ -56,6 +93,12 @@ pub struct Machine {
     pub target: String,
     /// Version of the project.
     pub version: String,
+    /// The commit that was measured, where it is known.
+    pub commit: String,
+    /// How the program was compiled: "optimised" or "with debug assertions".
+    pub build: String,
+    /// The seed that every case set starts from.
+    pub seed: u64,
     /// Load average over a minute when measuring began.
     pub load: f64,
     /// "quick" or "full".

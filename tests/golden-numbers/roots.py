@@ -134,32 +134,32 @@ def spread(low, high):
 
 def quadratics():
     for c in ([1, -1e8, 1], [1, -1, 1e-30], [94906268.375, -189812534.0, 94906265.625], [2e200, -3e200, 1e200]):
-        line("quadratic", c)
+        line("quadratic-rows", c)
     for _ in range(40):
-        line("quadratic", product([spread(-12, 12), spread(-12, 12)], lead=spread(-3, 3)))
+        line("quadratic-spread", product([spread(-12, 12), spread(-12, 12)], lead=spread(-3, 3)))
     for _ in range(40):
         r = spread(-2, 2)
-        line("quadratic", product([r, r * (1 + 10 ** random.uniform(-8, -2))], lead=spread(-100, 100)))
+        line("quadratic-close", product([r, r * (1 + 10 ** random.uniform(-8, -2))], lead=spread(-100, 100)))
     for _ in range(20):
-        line("quadratic", [spread(-3, 3), spread(-3, 3), spread(-30, -10)])
+        line("quadratic-tiny-lead", [spread(-3, 3), spread(-3, 3), spread(-30, -10)])
     for _ in range(20):
-        line("quadratic", [spread(-5, 5) for _ in range(3)])
+        line("quadratic-tame", [spread(-5, 5) for _ in range(3)])
 
 
 def cubics():
     for lead in (1e-14, 1e-20, -1e-14, 1e-17):
-        line("cubic", [0.32, -1.2, 1.0, lead])
+        line("cubic-tiny-lead", [0.32, -1.2, 1.0, lead])
     for _ in range(40):
         a, b = sorted(random.random() for _ in range(2))
         c = product([a, b])
-        line("cubic", c + [spread(-25, -8)])
+        line("cubic-tiny-lead", c + [spread(-25, -8)])
     for _ in range(40):
-        line("cubic", product([spread(-2, 1) for _ in range(3)], lead=spread(-2, 2)))
+        line("cubic-tame", product([spread(-2, 1) for _ in range(3)], lead=spread(-2, 2)))
     for _ in range(30):
         r = random.uniform(0.1, 0.9)
-        line("cubic", product([r, r + spread(-5, -3), r + spread(-3, -1)]))
+        line("cubic-close", product([r, r + spread(-5, -3), r + spread(-3, -1)]))
     for _ in range(20):
-        line("cubic", product([spread(-2, 2)], [(spread(-2, 2), spread(-4, 1))]))
+        line("cubic-one-real", product([spread(-2, 2)], [(spread(-2, 2), spread(-4, 1))]))
     line("touch-cubic", product([F(3, 10), F(3, 10), F(4, 5)]))
     line("touch-cubic", product([F(1, 2), F(50001, 100000), F(49999, 100000)]))
     for _ in range(40):
@@ -192,20 +192,20 @@ ORELLANA = [
 
 def quartics():
     for reals, pairs in ORELLANA:
-        line("quartic", product(reals, pairs))
-    line("quartic", [1e-3, 3 / 8, 1, 1, 1])
+        line("quartic-orellana", product(reals, pairs))
+    line("quartic-orellana", [1e-3, 3 / 8, 1, 1, 1])
     s = F(10) ** 30
-    line("quartic", [-s, s * s + s, 1 / s - s * s, -(1 + 1 / s), 1])
+    line("quartic-orellana", [-s, s * s + s, 1 / s - s * s, -(1 + 1 / s), 1])
     for reals in ([1000] * 4, [F(1, 10**15)] + [1000] * 3, [1, 1e30, 1e30, 1e44], [1, 1e7, 1e7, 1e14], [1, 1e7, 1e7, 1e15]):
         line("touch-quartic", product(reals))
     for _ in range(40):
-        line("quartic", product([spread(-2, 1) for _ in range(4)], lead=spread(-2, 2)))
+        line("quartic-tame", product([spread(-2, 1) for _ in range(4)], lead=spread(-2, 2)))
     for _ in range(30):
-        line("quartic", product([spread(-6, 6) for _ in range(4)]))
+        line("quartic-spread", product([spread(-6, 6) for _ in range(4)]))
     for _ in range(30):
-        line("quartic", product([spread(-1, 1) for _ in range(2)], [(spread(-1, 1), spread(-3, 1))]))
+        line("quartic-two-real", product([spread(-1, 1) for _ in range(2)], [(spread(-1, 1), spread(-3, 1))]))
     for _ in range(20):
-        line("quartic", product([], [(spread(-1, 1), spread(-3, 1)) for _ in range(2)]))
+        line("quartic-none-real", product([], [(spread(-1, 1), spread(-3, 1)) for _ in range(2)]))
     for _ in range(40):
         r = spread(-1, 1)
         line("touch-quartic", product([r, r, spread(-1, 1), spread(-1, 1)]))

@@ -15,6 +15,7 @@ mod pictures;
 mod planted;
 mod radiometry;
 mod repl;
+mod report;
 mod run;
 mod slips;
 mod stage;

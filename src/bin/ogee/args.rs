@@ -46,8 +46,9 @@ pub enum Command {
     Test(Test),
     /// Measure how far two pictures are apart
     Compare(Compare),
-    /// Measure speed against error
-    Bench(Unbuilt),
+    /// Measure kernels: speed against error
+    #[command(subcommand)]
+    Bench(Bench),
     /// Print the reference page of a block, a function or a constant; or the whole reference
     Docs(Docs),
     /// Explain a diagnostic's code, with a broken and a mended scene; or list all codes
@@ -58,12 +59,54 @@ pub enum Command {
     Man(Man),
 }
 
-/// What a command that is not there yet is given.
+/// `ogee bench`.
+#[derive(Subcommand)]
+pub enum Bench {
+    /// Measure every variant of every kernel, and write results and report; exits 1 where a default passes its bar
+    Kernels(Kernels),
+    /// Write the report again from results alone
+    Report(BenchReport),
+    /// Ask one variant for one input that a report names
+    Repro(Repro),
+}
+
+/// `ogee bench kernels`.
 #[derive(Args)]
-pub struct Unbuilt {
-    /// Anything
-    #[arg(trailing_var_arg = true, allow_hyphen_values = true, hide = true)]
-    pub rest: Vec<String>,
+pub struct Kernels {
+    /// Within a minute (the default)
+    #[arg(long, conflicts_with = "full")]
+    pub quick: bool,
+    /// More inputs and longer blocks, for the record
+    #[arg(long)]
+    pub full: bool,
+    /// Folder for index.md, plots and results
+    #[arg(long, value_name = "DIR", default_value = "report", value_hint = ValueHint::DirPath)]
+    pub out: PathBuf,
+    /// These components alone: curves,roots
+    #[arg(long, value_name = "NAME,…", value_delimiter = ',')]
+    pub only: Vec<String>,
+}
+
+/// `ogee bench report`.
+#[derive(Args)]
+pub struct BenchReport {
+    /// The folder of the report, with its results
+    #[arg(default_value = "report", value_hint = ValueHint::DirPath)]
+    pub folder: PathBuf,
+}
+
+/// `ogee bench repro`.
+#[derive(Args)]
+pub struct Repro {
+    /// As the report names it: "cubic evaluation"
+    pub component: String,
+    /// The case set: "tiny tail"
+    pub case: String,
+    /// The variant: "horner"
+    pub variant: String,
+    /// The input, as hexadecimal floats
+    #[arg(required = true, trailing_var_arg = true, allow_hyphen_values = true)]
+    pub input: Vec<String>,
 }
 
 /// What shapes every evaluation.

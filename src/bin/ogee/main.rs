@@ -39,12 +39,12 @@ fn run(command: Command) -> Ended {
         Command::Fmt(args) => commands::fmt::run(&args),
         Command::Test(args) => commands::test::run(&args),
         Command::Compare(args) => commands::compare::run(&args),
+        Command::Bench(args) => commands::bench::run(&args),
         Command::Docs(args) => commands::docs::run(&args),
         Command::Explain(args) => commands::explain::run(&args),
         Command::Completions(args) => commands::shell::completions(&args),
         Command::Man(args) => commands::shell::man(&args),
         Command::Repl(args) => repl::run(&args),
-        Command::Bench(_) => Err(Failure::not_built("`ogee bench`")),
     }
 }
 

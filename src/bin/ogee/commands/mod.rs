@@ -1,6 +1,7 @@
 //! One file for each command, and what those that read scenes share.
 
 pub mod ast;
+pub mod bench;
 pub mod check;
 pub mod compare;
 pub mod docs;

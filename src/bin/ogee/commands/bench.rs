@@ -1,0 +1,125 @@
+//! `ogee bench`: kernels measured, and the report of it.
+
+use crate::args::{Bench, BenchReport, Kernels, Repro};
+use crate::place::Place;
+use crate::speech::{Ended, Exit, Failure, data, reason, tell};
+use ogee::diag::nearest;
+use ogee::math::hex::parse_hex_list;
+use ogee::report::components::{COMPONENTS, SEED};
+use ogee::report::page::{Page, render, short};
+use ogee::report::row::{Machine, Row};
+use ogee::report::trial::{Only, Plan};
+use ogee::report::{measure, reproduce, store};
+use std::path::Path;
+
+/// Measures, reports, or asks for one input.
+pub fn run(args: &Bench) -> Ended {
+    match args {
+        Bench::Kernels(args) => kernels(args),
+        Bench::Report(args) => report(args),
+        Bench::Repro(args) => repro(args),
+    }
+}
+
+fn kernels(args: &Kernels) -> Ended {
+    let names = || COMPONENTS.iter().map(|(name, _)| *name);
+    if let Some(unknown) = args.only.iter().find(|wanted| !names().any(|name| name == **wanted)) {
+        let near = nearest(unknown, names()).map_or(String::new(), |near| format!("did you mean `{near}`? "));
+        let all = names().collect::<Vec<_>>().join(", ");
+        return Err(Failure::usage(format!("there is no component `{unknown}`\n{near}there are {all}")));
+    }
+    let results = args.out.join("results");
+    std::fs::create_dir_all(&results)
+        .map_err(|error| Failure::machine(format!("cannot make {}", results.display()), reason(&error)))?;
+    let (mode, plan) = if args.full { ("full", Plan::full()) } else { ("quick", Plan::quick()) };
+    let machine = machine(mode);
+    let rows = measure(&plan, &args.only, |name| tell(format!("measuring {name}")));
+    write(&args.out, &store::write(&machine, &rows))?;
+    write(&args.out, &render(&machine, &rows))?;
+    tell(format!("wrote {}", args.out.join("index.md").display()));
+    let broken: Vec<&Row> = rows.iter().filter(|row| !row.within_bar()).collect();
+    for row in &broken {
+        let bar = short(row.bar.unwrap_or(0.0));
+        let wrong = row.missed + row.spurious + row.not_finite;
+        tell(format!(
+            "{}, {}: {} {}, {wrong} wrong; the bar is {bar}, none wrong",
+            row.component,
+            row.case,
+            short(row.error_max),
+            row.error_unit
+        ));
+    }
+    Ok(if broken.is_empty() { Exit::Done } else { Exit::Scene })
+}
+
+fn write(folder: &Path, pages: &[Page]) -> Result<(), Failure> {
+    pages.iter().try_for_each(|page| Place::try_at(&folder.join(&page.name))?.write(page.text.as_bytes()))
+}
+
+/// Renders what the result files of a folder hold, in the order of the components.
+fn report(args: &BenchReport) -> Ended {
+    let results = args.folder.join("results");
+    let cannot = |what: &Path, error: &std::io::Error| {
+        Failure::machine(format!("cannot read {}", what.display()), reason(error))
+    };
+    let entries = std::fs::read_dir(&results).map_err(|error| cannot(&results, &error))?;
+    let mut files: Vec<_> = entries.flatten().map(|entry| entry.path()).collect();
+    files.retain(|path| path.extension().is_some_and(|extension| extension == "jsonl"));
+    files.sort();
+    let (mut machine, mut rows) = (Machine::default(), Vec::new());
+    for file in files {
+        let text = std::fs::read_to_string(&file).map_err(|error| cannot(&file, &error))?;
+        let (of_file, mut own) = store::read(&text).map_err(|error| Failure {
+            exit: Exit::Scene,
+            message: format!("{}: {error}", file.display()),
+        })?;
+        machine = of_file;
+        rows.append(&mut own);
+    }
+    store::sort(&mut rows);
+    write(&args.folder, &render(&machine, &rows))?;
+    Ok(Exit::Done)
+}
+
+fn repro(args: &Repro) -> Ended {
+    let Some(input) = parse_hex_list(&args.input.join(" ")) else {
+        return Err(Failure::usage("the input is not hexadecimal floats like -0x1.8p+3"));
+    };
+    let only = Only {
+        component: args.component.clone(),
+        case: args.case.clone(),
+        variant: args.variant.clone(),
+        input,
+    };
+    let Some(row) = reproduce(only) else {
+        return Err(Failure::usage(
+            "there is no such variant, or its inputs have another number of numbers\nthe report has a line to copy for each",
+        ));
+    };
+    data(format!(
+        "answer    {}\nerror     {} {}\nmissed    {}\nspurious  {}\nwork      {} {}\n",
+        row.answer, row.error_max, row.error_unit, row.missed, row.spurious, row.work, row.work_unit
+    ))?;
+    Ok(Exit::Done)
+}
+
+/// What is known of the machine and the build; blank where nothing is.
+fn machine(mode: &str) -> Machine {
+    let read = |path: &str| std::fs::read_to_string(path).unwrap_or_default();
+    let cpuinfo = read("/proc/cpuinfo");
+    let cpu = cpuinfo.lines().find_map(|line| line.strip_prefix("model name")?.split_once(": "));
+    let load = read("/proc/loadavg").split(' ').next().and_then(|load| load.parse().ok());
+    let wide = if cfg!(target_feature = "avx2") { "avx2" } else { "baseline features" };
+    let git = std::process::Command::new("git").args(["rev-parse", "--short", "HEAD"]).output();
+    let commit = git.ok().filter(|out| out.status.success()).map(|out| out.stdout);
+    Machine {
+        cpu: cpu.map_or_else(|| "an unknown processor".into(), |(_, name)| name.trim().to_owned()),
+        target: format!("{} with {wide}", std::env::consts::ARCH),
+        version: env!("CARGO_PKG_VERSION").into(),
+        commit: commit.map_or(String::new(), |hash| String::from_utf8_lossy(&hash).trim().to_owned()),
+        build: if cfg!(debug_assertions) { "with debug assertions" } else { "optimised" }.into(),
+        seed: SEED,
+        load: load.unwrap_or(0.0),
+        mode: mode.into(),
+    }
+}

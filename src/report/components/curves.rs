@@ -1,0 +1,157 @@
+//! A cubic from its Bézier points, on the six families that pull the methods apart. Input: t and four points. Truth: double-double.
+
+use super::{SEED, ulp};
+use crate::geometry::curve::Method;
+use crate::geometry::curve::evaluate::{batch, double_double, magnitude};
+use crate::math::Dd;
+use crate::math::elementary::exp2;
+use crate::math::error::UNIT_ROUNDOFF;
+use crate::math::random::Random;
+use crate::report::row::Row;
+use crate::report::trial::{Plan, Subject, Trial, Verdict, default, variant};
+
+/// t, then four Bézier points.
+type Input = [f64; 5];
+
+struct Case {
+    name: &'static str,
+    unit: &'static str,
+    bar: f64,
+    draw: fn(&mut Random) -> Input,
+    /// What an error is divided by; 0 where it must be 0.
+    scale: fn(&Input) -> f64,
+}
+
+const CASES: [Case; 6] = [
+    Case { name: "inside", unit: "ulp of max |P|", bar: 0.51, draw: inside, scale: |i| ulp(largest(i)) },
+    Case { name: "end points", unit: "ulp of the end", bar: 0.0, draw: ends, scale: |i| ulp(value(i)) },
+    Case { name: "near a triple root", unit: "u, relative", bar: 4.0, draw: triple, scale: relative },
+    Case { name: "tiny tail", unit: "u, relative", bar: 4.0, draw: tail, scale: relative },
+    Case {
+        name: "large offset",
+        unit: "ulp of the offset",
+        bar: 0.51,
+        draw: offset,
+        scale: |i| ulp(largest(i)),
+    },
+    Case {
+        name: "outside",
+        unit: "u Σ|P||B|",
+        bar: 8.0,
+        draw: outside,
+        scale: |i| UNIT_ROUNDOFF * magnitude(&points(i), i[0]),
+    },
+];
+
+/// Trials of curve evaluation.
+pub fn rows(plan: &Plan) -> Vec<Row> {
+    CASES.iter().flat_map(|case| trial(plan, case)).collect()
+}
+
+fn trial(plan: &Plan, case: &Case) -> Vec<Row> {
+    let mut random = Random::new(SEED);
+    let inputs: Vec<Input> = (0..plan.inputs).map(|_| (case.draw)(&mut random)).collect();
+    let subject = Subject {
+        component: "cubic evaluation",
+        case: case.name,
+        unit: case.unit,
+        work: "",
+        bar: Some(case.bar),
+    };
+    let scale = case.scale;
+    let judge = move |input: &Input, value: &f64| {
+        let error = (Dd::from(*value) - double_double(&points(input), input[0])).value().abs();
+        Verdict::error(error / scale(input))
+    };
+    let ts: Vec<f64> = inputs.iter().map(|i| i[0]).collect();
+    let one = inputs.first().map_or([0.0; 4], points);
+    let mut trial = Trial::new(plan, subject, inputs, judge);
+    trial.run(variant("horner"), |i| Method::Horner.evaluate(&points(i), i[0]));
+    trial.run(variant("lerps a+t(b−a)"), |i| lerps(&points(i), i[0]));
+    trial.run(variant("bernstein"), |i| Method::Bernstein.evaluate(&points(i), i[0]));
+    trial.run(variant("volk schumaker"), |i| Method::VolkSchumaker.evaluate(&points(i), i[0]));
+    trial.run(variant("de casteljau"), |i| Method::DeCasteljau.evaluate(&points(i), i[0]));
+    trial.run(variant("offset"), |i| Method::Offset.evaluate(&points(i), i[0]));
+    let mut out = vec![0.0; ts.len()];
+    let batched = move || {
+        batch(std::hint::black_box(&one), &ts, &mut out);
+        out.last().copied().unwrap_or(0.0)
+    };
+    trial.run_timed(variant("batched"), plan.inputs, |i| batch_of_one(&points(i), i[0]), batched);
+    let why = "it is the only method within the bars of all six sets";
+    trial.run(default("compensated").note(why), |i| Method::DEFAULT.evaluate(&points(i), i[0]));
+    trial.finish()
+}
+
+fn points(input: &Input) -> [f64; 4] {
+    [input[1], input[2], input[3], input[4]]
+}
+
+fn largest(input: &Input) -> f64 {
+    input[1..].iter().fold(0.0, |m: f64, x| m.max(x.abs()))
+}
+
+fn value(input: &Input) -> f64 {
+    double_double(&points(input), input[0]).value()
+}
+
+fn relative(input: &Input) -> f64 {
+    UNIT_ROUNDOFF * value(input).abs()
+}
+
+fn batch_of_one(p: &[f64; 4], t: f64) -> f64 {
+    let mut out = [0.0];
+    batch(p, &[t], &mut out);
+    out[0]
+}
+
+/// Repeated a + t(b − a): the last point is missed by what b − a loses.
+fn lerps(p: &[f64; 4], t: f64) -> f64 {
+    let lerp = |a: f64, b: f64| a + t * (b - a);
+    let [a, b, c] = [lerp(p[0], p[1]), lerp(p[1], p[2]), lerp(p[2], p[3])];
+    lerp(lerp(a, b), lerp(b, c))
+}
+
+fn inside(r: &mut Random) -> Input {
+    let row = [0.0, 1.0, -1.0, 2.0];
+    let p = if r.unit() < 0.5 { row } else { [(); 4].map(|()| r.between(-3.0, 3.0)) };
+    [r.unit(), p[0], p[1], p[2], p[3]]
+}
+
+fn ends(r: &mut Random) -> Input {
+    let mut big = || r.sign() * exp2(r.between(-60.0, 60.0));
+    let p = [big(), big(), big(), big()];
+    [if r.unit() < 0.25 { 0.0 } else { 1.0 }, p[0], p[1], p[2], p[3]]
+}
+
+/// s (t − k/16)³, at distances from the root between 10⁻⁵ and 1/16.
+fn triple(r: &mut Random) -> Input {
+    let root = (1.0 + 15.0 * r.unit()).floor() / 16.0;
+    let (a, b, s) = (root, 1.0 - root, r.sign());
+    let t = root + r.sign() * exp2(r.between(-16.6, -4.0));
+    [t, -a * a * a * s, a * a * b * s, -a * b * b * s, b * b * b * s]
+}
+
+fn tail(r: &mut Random) -> Input {
+    let tail = exp2(r.between(-120.0, -20.0));
+    let step = exp2(r.between(-45.0, -5.0).floor());
+    if r.unit() < 0.5 { [1.0 - step, 1.0, 0.0, 0.0, tail] } else { [step, tail, 0.0, 0.0, 1.0 + r.unit()] }
+}
+
+/// Gaps that are whole numbers, or not: which method is better turns with that.
+fn offset(r: &mut Random) -> Input {
+    let whole = r.unit() < 0.5;
+    let origin = exp2(r.between(20.0, 40.0)).floor();
+    let mut point = || {
+        let gap = r.between(0.0, 4.0);
+        origin + if whole { gap.floor() } else { gap }
+    };
+    let p = [point(), point(), point(), point()];
+    [r.unit(), p[0], p[1], p[2], p[3]]
+}
+
+fn outside(r: &mut Random) -> Input {
+    let mut point = || r.between(-3.0, 3.0);
+    let p = [point(), point(), point(), point()];
+    [r.between(-10.0, 10.0), p[0], p[1], p[2], p[3]]
+}

@@ -1,0 +1,257 @@
+//! One component on one set of cases: each variant judged input by input, then all of them timed in turn.
+//!
+//! An input is a row of numbers, so that the one that caused the largest error can be written down exactly and given back.
+
+use super::measure::{Errors, Timed, interleaved};
+use super::row::Row;
+use crate::math::hex::hex_list;
+use std::fmt::Debug;
+use std::hint::black_box;
+
+/// How much to do.
+#[derive(Clone, Debug)]
+pub struct Plan {
+    /// Inputs of each random case set.
+    pub inputs: usize,
+    /// Timing blocks of each variant; 0 for errors alone.
+    pub blocks: usize,
+    /// How long a block lasts at least, nanoseconds.
+    pub block_ns: f64,
+    /// One variant on one input, instead of everything.
+    pub only: Option<Only>,
+}
+
+/// What to reproduce.
+#[derive(Clone, Debug)]
+pub struct Only {
+    /// As rows name them.
+    pub component: String,
+    /// As rows name them.
+    pub case: String,
+    /// As rows name them.
+    pub variant: String,
+    /// The numbers of the input.
+    pub input: Vec<f64>,
+}
+
+impl Plan {
+    /// Errors alone, on few inputs: for tests.
+    pub fn errors() -> Plan {
+        Plan { inputs: 500, blocks: 0, block_ns: 0.0, only: None }
+    }
+
+    /// Within a minute.
+    pub fn quick() -> Plan {
+        Plan { inputs: 2000, blocks: 30, block_ns: 5e5, only: None }
+    }
+
+    /// For the record.
+    pub fn full() -> Plan {
+        Plan { inputs: 20_000, blocks: 60, block_ns: 4e6, only: None }
+    }
+
+    /// One variant on one input.
+    pub fn only(only: Only) -> Plan {
+        Plan { only: Some(only), ..Plan::errors() }
+    }
+}
+
+/// What is wrong with one answer.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Verdict {
+    /// Magnitude of the error, in the trial's unit; None where there is no answer to measure. NaN and infinities are counted apart.
+    pub error: Option<f64>,
+    /// Answers that should be there and are not.
+    pub missed: usize,
+    /// Answers that should not be there.
+    pub spurious: usize,
+    /// Evaluations, iterations or tests that the answer took.
+    pub work: f64,
+}
+
+impl Verdict {
+    /// An error and nothing else.
+    pub fn error(error: f64) -> Verdict {
+        Verdict { error: Some(error), ..Verdict::default() }
+    }
+}
+
+/// What a row says of a variant beside numbers.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Label {
+    name: &'static str,
+    default: bool,
+    note: &'static str,
+}
+
+/// A variant that is there to be compared with.
+pub const fn variant(name: &'static str) -> Label {
+    Label { name, default: false, note: "" }
+}
+
+/// The variant that the renderer uses.
+pub const fn default(name: &'static str) -> Label {
+    Label { name, default: true, note: "" }
+}
+
+impl Label {
+    /// A sentence: why the default is one though off the frontier, or what is known to fail.
+    #[must_use]
+    pub const fn note(self, note: &'static str) -> Label {
+        Label { note, ..self }
+    }
+}
+
+/// What the trials of a component share.
+#[derive(Clone, Copy, Debug)]
+pub struct Subject {
+    /// What is computed.
+    pub component: &'static str,
+    /// On what.
+    pub case: &'static str,
+    /// The unit of errors.
+    pub unit: &'static str,
+    /// What `work` counts; empty where it does not.
+    pub work: &'static str,
+    /// The default's largest error must not be above this, with nothing missed, spurious or not finite.
+    pub bar: Option<f64>,
+}
+
+/// Inputs between two looks at the clock: few enough that a slow variant ends its block in time. Runs go round through all inputs.
+const CHUNK: usize = 64;
+
+type Judge<'a, const N: usize, O> = Box<dyn Fn(&[f64; N], &O) -> Verdict + 'a>;
+
+/// Variants on one case set of inputs of N numbers, with answers O.
+pub struct Trial<'a, const N: usize, O> {
+    plan: &'a Plan,
+    subject: Subject,
+    inputs: Vec<[f64; N]>,
+    judge: Judge<'a, N, O>,
+    rows: Vec<Row>,
+    timed: Vec<Timed<'a>>,
+}
+
+impl<'a, const N: usize, O: Debug + 'a> Trial<'a, N, O> {
+    /// A trial without variants yet. Where the plan is for one input of this trial, that one takes the place of all.
+    pub fn new(
+        plan: &'a Plan,
+        subject: Subject,
+        inputs: Vec<[f64; N]>,
+        judge: impl Fn(&[f64; N], &O) -> Verdict + 'a,
+    ) -> Self {
+        let inputs = match &plan.only {
+            None => inputs,
+            Some(only) if (&*only.component, &*only.case) == (subject.component, subject.case) => {
+                <[f64; N]>::try_from(&*only.input).into_iter().collect()
+            }
+            Some(_) => Vec::new(),
+        };
+        Trial { plan, subject, inputs, judge: Box::new(judge), rows: Vec::new(), timed: Vec::new() }
+    }
+
+    /// Judges a variant on every input, and has it timed on them later.
+    pub fn run(&mut self, label: Label, solve: impl Fn(&[f64; N]) -> O + Clone + 'a) {
+        let (inputs, timed) = (self.inputs.clone(), solve.clone());
+        let calls = inputs.len().clamp(1, CHUNK);
+        let mut next = 0;
+        let run = move || {
+            let end = (next + calls).min(inputs.len());
+            inputs[next..end].iter().for_each(|input| drop(black_box(timed(black_box(input)))));
+            // What is left over at the end, less than a chunk, is not timed.
+            next = if end + calls <= inputs.len() { end } else { 0 };
+            0.0
+        };
+        self.run_timed(label, calls, solve, run);
+    }
+
+    /// The same, timed by `work`, which makes `calls` calls: for variants that take many inputs at once.
+    pub fn run_timed(
+        &mut self,
+        label: Label,
+        calls: usize,
+        solve: impl Fn(&[f64; N]) -> O,
+        work: impl FnMut() -> f64 + 'a,
+    ) {
+        if self.plan.only.as_ref().is_some_and(|only| only.variant != label.name) || self.inputs.is_empty() {
+            return;
+        }
+        self.rows.push(self.judged(label, solve));
+        self.timed.push(Timed { name: label.name, calls, run: Box::new(work) });
+    }
+
+    fn judged(&self, label: Label, solve: impl Fn(&[f64; N]) -> O) -> Row {
+        let mut errors = Errors::default();
+        let mut row = Row::of(&self.subject, label.name, label.default, label.note);
+        for input in &self.inputs {
+            let answer = solve(input);
+            let verdict = (self.judge)(input, &answer);
+            row.missed += verdict.missed;
+            row.spurious += verdict.spurious;
+            row.work += verdict.work;
+            if (verdict.missed > 0 || verdict.spurious > 0) && row.failed_input.is_empty() {
+                row.failed_input = hex_list(input);
+            }
+            if let Some(error) = verdict.error {
+                errors.push(error, || hex_list(input));
+            }
+            if self.plan.only.is_some() {
+                row.answer = format!("{answer:?}");
+            }
+        }
+        row.n = self.inputs.len();
+        row.work /= row.n.max(1) as f64;
+        row.not_finite = errors.not_finite;
+        row.worst_input = errors.worst_input().to_owned();
+        [row.error_max, row.error_p99, row.error_mean] = errors.summary();
+        row
+    }
+
+    /// Times the variants in turn and gives their rows.
+    pub fn finish(mut self) -> Vec<Row> {
+        if self.plan.blocks > 0 {
+            let timings = interleaved(&mut self.timed, self.plan.blocks, self.plan.block_ns);
+            for (row, timing) in self.rows.iter_mut().zip(timings) {
+                row.ns_median = timing.ns_median;
+                row.ns_mad = timing.ns_mad;
+                row.ratio = timing.ratio;
+                row.ratio_ci = timing.ratio_ci;
+            }
+        }
+        self.rows
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SQUARE_ROOT: Subject =
+        Subject { component: "root", case: "small", unit: "absolute", work: "", bar: Some(1e-15) };
+
+    fn rows(plan: &Plan) -> Vec<Row> {
+        let inputs = (0..100).map(|i| [f64::from(i) / 100.0]).collect();
+        let judge = |[x]: &[f64; 1], root: &f64| Verdict::error((root * root - x).abs());
+        let mut trial = Trial::new(plan, SQUARE_ROOT, inputs, judge);
+        trial.run(variant("half"), |[x]| x / 2.0);
+        trial.run(default("exact"), |[x]| x.sqrt());
+        trial.finish()
+    }
+
+    #[test]
+    fn variants_are_judged_alike_and_the_worst_input_reproduces_its_error() {
+        let all = rows(&Plan::errors());
+        assert!(all[0].error_max > 0.7 && all[1].error_max < 1e-15 && all[1].default);
+        let input = crate::math::hex::parse_hex_list(&all[0].worst_input).unwrap();
+        let only = Only { component: "root".into(), case: "small".into(), variant: "half".into(), input };
+        let again = rows(&Plan::only(only));
+        assert_eq!((again.len(), again[0].n, again[0].error_max), (1, 1, all[0].error_max));
+        assert!(!again[0].answer.is_empty());
+    }
+
+    #[test]
+    fn a_plan_with_blocks_has_times() {
+        let timed = rows(&Plan { blocks: 3, block_ns: 1e3, ..Plan::errors() });
+        assert!(timed.iter().all(|row| row.ns_median > 0.0) && timed[0].ratio == 1.0);
+    }
+}

@@ -1,0 +1,122 @@
+//! The report's case sets as tests: every default keeps its bar, and every variant that is known to fail does, so that the case sets
+//! are as hard as they claim. Errors and counts alone; no time is asked for.
+
+use ogee::math::hex::parse_hex_list;
+use ogee::report::page::render;
+use ogee::report::row::{Machine, Row};
+use ogee::report::trial::{Only, Plan};
+use ogee::report::{measure, reproduce, store};
+use std::sync::OnceLock;
+
+/// All rows, measured once for all tests here.
+fn rows() -> &'static [Row] {
+    static ROWS: OnceLock<Vec<Row>> = OnceLock::new();
+    ROWS.get_or_init(|| measure(&Plan::errors(), &[], |_| ()))
+}
+
+fn row(component: &str, case: &str, variant: &str) -> &'static Row {
+    let found = rows().iter().find(|r| r.component == component && r.case == case && r.variant == variant);
+    found.unwrap_or_else(|| panic!("no row {component}, {case}, {variant}"))
+}
+
+#[test]
+fn every_default_keeps_its_bar_on_every_case_set() {
+    let broken: Vec<String> = rows()
+        .iter()
+        .filter(|r| !r.within_bar())
+        .map(|r| {
+            let wrong = [r.missed, r.spurious, r.not_finite];
+            format!(
+                "{}, {}: {:e} over {:?}, wrong {wrong:?}: {} {}",
+                r.component, r.case, r.error_max, r.bar, r.worst_input, r.failed_input
+            )
+        })
+        .collect();
+    assert!(broken.is_empty(), "{}", broken.join("\n"));
+}
+
+#[test]
+fn every_case_set_has_one_default_with_a_bar() {
+    let mut cases: Vec<(&str, &str)> = rows().iter().map(|r| (&*r.component, &*r.case)).collect();
+    cases.dedup();
+    for (component, case) in cases {
+        let own = rows().iter().filter(|r| r.component == component && r.case == case);
+        let defaults: Vec<&Row> = own.filter(|r| r.default).collect();
+        assert_eq!(defaults.len(), 1, "{component}, {case}");
+        assert!(defaults[0].bar.is_some() && defaults[0].n > 0, "{component}, {case}");
+    }
+}
+
+#[test]
+fn case_sets_are_as_hard_as_they_claim() {
+    // A variant's largest error on a case set is at least this.
+    let errors = [
+        ("cubic evaluation", "end points", "horner", 1.0),
+        ("cubic evaluation", "near a triple root", "horner", 1e10),
+        ("cubic evaluation", "near a triple root", "bernstein", 1e10),
+        ("cubic evaluation", "tiny tail", "horner", 1e15),
+        ("cubic evaluation", "large offset", "de casteljau", 1.0),
+        ("arc length", "cusp", "gauss 24", 1e-4),
+        ("arc length", "near-cusp", "gauss 64", 1e-6),
+        ("arc length", "backtrack", "gauss 64", 1e-5),
+        ("quadratic roots", "roots of unlike size", "b²−4ac", 1e6),
+        ("ray and sphere", "grazing", "b²−4ac", 1e5),
+        ("ray and plane", "grazing", "plain", 1e5),
+        ("fresnel", "into 1.1", "schlick, one side", 0.2),
+        ("fresnel", "out of glass", "schlick, one side", 0.8),
+    ];
+    for (component, case, variant, least) in errors {
+        let own = row(component, case, variant);
+        assert!(own.error_max >= least, "{component}, {case}, {variant}: {:e}", own.error_max);
+    }
+    // And so many of its answers are missing, made up or no numbers.
+    let wrong = [
+        ("parameter at a length", "backtrack", "newton, gauss 24", 1),
+        ("quadratic roots", "known traps", "b²−4ac", 1),
+        ("cubic roots", "tiny lead", "cardano", 10),
+        ("cubic roots", "touching", "cardano", 10),
+        ("quartic roots", "Orellana and De Michele", "ferrari", 3),
+        ("ray and sphere", "from 10⁸ radii", "b²−4ac", 50),
+        ("ray and closed mesh", "aimed at edges", "cramer", 10),
+        ("ray and closed mesh", "aimed at edges", "möller trumbore", 10),
+        ("ray and torus", "from 10⁵", "ferrari at the eye", 100),
+        ("ray and patch", "first of three", "newton from one start", 10),
+        ("implicit surface", "squared sphere", "steps of 0.01", 100),
+        ("implicit surface", "thin shell", "steps of 0.01", 100),
+    ];
+    for (component, case, variant, least) in wrong {
+        let own = row(component, case, variant);
+        let n = own.missed + own.spurious + own.not_finite;
+        assert!(n >= least, "{component}, {case}, {variant}: {n} wrong, error {:e}", own.error_max);
+    }
+}
+
+#[test]
+fn the_worst_inputs_give_their_errors_again() {
+    for own in rows().iter().step_by(7).filter(|r| !r.worst_input.is_empty()) {
+        let only = Only {
+            component: own.component.clone(),
+            case: own.case.clone(),
+            variant: own.variant.clone(),
+            input: parse_hex_list(&own.worst_input).expect("the report writes hexadecimal floats"),
+        };
+        let again = reproduce(only).expect("the report names what there is");
+        assert_eq!(again.error_max, own.error_max, "{}, {}, {}", own.component, own.case, own.variant);
+    }
+    let nothing = Only { component: "x".into(), case: "y".into(), variant: "z".into(), input: vec![1.0] };
+    assert!(reproduce(nothing).is_none());
+}
+
+#[test]
+fn results_alone_render_the_same_report() {
+    let machine = Machine { mode: "quick".into(), ..Machine::default() };
+    let mut again = Vec::new();
+    let mut files = store::write(&machine, rows());
+    files.reverse();
+    for file in files {
+        again.extend(store::read(&file.text).expect("what was written can be read").1);
+    }
+    store::sort(&mut again);
+    let text = |rows: &[Row]| render(&machine, rows).into_iter().map(|page| page.text).collect::<Vec<_>>();
+    assert!(text(&again) == text(rows()));
+}
