@@ -1,6 +1,7 @@
 //! How a smooth boundary divides light: Fresnel's equations, Schlick's approximation, Snell's law. Directions leave the
 //! surface; η is the index beyond the boundary over the index on the side that the direction is on.
 
+use crate::math::exact::sum_of_products;
 use crate::scene::Rgb;
 use glam::DVec3;
 
@@ -17,10 +18,18 @@ pub fn refract(wo: DVec3, n: DVec3, eta: f64) -> Option<DVec3> {
     Some((n * (cos_o / eta - cos_t) - wo / eta).normalize())
 }
 
+/// sin² within this of 1 is near enough to the critical angle for its rounding to show in the cosine, by more than 3 bits.
+const NEAR_CRITICAL: f64 = 1.0 / 64.0;
+
 /// Cosine of the angle beyond the boundary, for one of cosine `cos_o` ≥ 0 before it; none from the critical angle on.
-/// sin² is (1 − c)(1 + c), so that grazing angles keep their digits.
+/// sin² is (1 − c)(1 + c), so that grazing angles keep their digits; near the critical angle η² − 1 + c² is summed in twice the
+/// working precision, so that the angle itself is certain.
 pub fn cos_beyond(cos_o: f64, eta: f64) -> Option<f64> {
     let sin2 = ((1.0 - cos_o) * (1.0 + cos_o)).max(0.0) / (eta * eta);
+    if (sin2 - 1.0).abs() < NEAR_CRITICAL {
+        let above = sum_of_products([(eta, eta), (cos_o, cos_o), (-1.0, 1.0)]);
+        return (above > 0.0).then(|| above.sqrt() / eta);
+    }
     (sin2 < 1.0).then(|| (1.0 - sin2).sqrt())
 }
 
@@ -109,6 +118,23 @@ mod tests {
             assert!((found - r).abs() < 5e-7, "{degrees}° inside: {found}");
         }
         assert!((dielectric(1.0, 1.333) - 0.020373).abs() < 5e-7);
+    }
+
+    #[test]
+    fn the_critical_angle_is_certain_and_its_neighbourhood_keeps_its_digits() {
+        // η = 3/5 makes the critical cosine 4/5; both rounded, so the truth is that of the rounded numbers.
+        let eta = 0.6;
+        for k in 1..200 {
+            let c = 0.8 + f64::from(k) * 0.8f64.next_up().rem_euclid(0.8);
+            let above = sum_of_products([(eta, eta), (c, c), (-1.0, 1.0)]);
+            let beyond = cos_beyond(c, eta).unwrap();
+            assert!((beyond * eta / above.sqrt() - 1.0).abs() <= 4.0 * f64::EPSILON, "{k}: {beyond}");
+        }
+        let seam = |sin2: f64| (1.0 - sin2 * 0.36f64).sqrt();
+        for sin2 in [1.0 - NEAR_CRITICAL, 1.0 - 2.0 * NEAR_CRITICAL, 0.999] {
+            let found = cos_beyond(seam(sin2), eta).unwrap();
+            assert!((found * found - (1.0 - sin2)).abs() < 4e-16, "{sin2}: {found}");
+        }
     }
 
     #[test]
