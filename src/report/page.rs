@@ -206,9 +206,11 @@ fn counts_alone(rows: &[&Row]) -> bool {
 
 fn points(rows: &[&Row]) -> Vec<Point> {
     let shares = counts_alone(rows);
+    // A variant without a right answer has no error to show; it stands at the top.
+    let error = |r: &Row| if wrong(r) >= r.n { f64::INFINITY } else { r.error_max };
     let point = |r: &&Row| Point {
         cost: r.ns_median,
-        error: if shares { wrong(r) as f64 / r.n.max(1) as f64 } else { r.error_max },
+        error: if shares { wrong(r) as f64 / r.n.max(1) as f64 } else { error(r) },
         wrong: wrong(r),
         label: r.variant.clone(),
         default: r.default,

@@ -13,7 +13,7 @@ use std::fmt::Write;
 pub struct Point {
     /// Cost, > 0; left is better.
     pub cost: f64,
-    /// Error, ≥ 0; low is better. 0 is drawn on a floor of its own.
+    /// Error, ≥ 0; low is better. 0 is drawn on a floor of its own, infinity at the top.
     pub error: f64,
     /// Answers missed, spurious or not finite.
     pub wrong: usize,

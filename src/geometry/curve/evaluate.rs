@@ -211,7 +211,8 @@ fn bernstein_sum(p: &[f64; 4], x: f64, r: f64) -> f64 {
     (p[0] * (r * r * r) + p[1] * (3.0 * (r * r * x))) + (p[2] * (3.0 * (x * x * r)) + p[3] * (x * x * x))
 }
 
-/// Values of one cubic at many parameters, in Bernstein form: the fast one, for tessellation, within an ulp of max|P|.
+/// Values of one cubic at many parameters, in Bernstein form: the fast one, for tessellation, within two ulp of max|P| and a
+/// tenth.
 /// One coordinate a call, so that the loop is done in vector registers; `out` is as long as `ts`.
 pub fn batch(points: &[f64; 4], ts: &[f64], out: &mut [f64]) {
     let [a, b, c, d] = [points[0], 3.0 * points[1], 3.0 * points[2], points[3]];
