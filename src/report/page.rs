@@ -206,8 +206,8 @@ fn counts_alone(rows: &[&Row]) -> bool {
 
 fn points(rows: &[&Row]) -> Vec<Point> {
     let shares = counts_alone(rows);
-    // A variant without a right answer has no error to show; it stands at the top.
-    let error = |r: &Row| if wrong(r) >= r.n { f64::INFINITY } else { r.error_max };
+    // A variant whose wrong answers leave no error to show stands at the top.
+    let error = |r: &Row| if wrong(r) > 0 && r.error_max == 0.0 { f64::INFINITY } else { r.error_max };
     let point = |r: &&Row| Point {
         cost: r.ns_median,
         error: if shares { wrong(r) as f64 / r.n.max(1) as f64 } else { error(r) },
