@@ -8,11 +8,13 @@
 //! | [`Method::VolkSchumaker`] | 2 ulp | 0.4 | near multiple roots, far from the origin |
 //! | [`Method::Offset`] | 2½ ulp, ½ ulp of a large offset | 0.75 | near multiple roots, in small tails |
 //! | [`Method::Compensated`] | ½ ulp of the value itself | 5 to 7 | nowhere short of a condition number of 10¹⁵ |
+//! | [`Method::FromEnds`] | ½ ulp of the value itself | a third of that once prepared | nowhere short of a condition number of 10¹⁵ |
 //!
-//! No plain method meets every bar that a scene may set, so the default is the compensated one, at five to seven times the price of
-//! Horner's from points; [`batch`] does more than 10⁹ a second at two ulp of max|P|. Largest errors and times over Horner's as
-//! `ogee bench kernels --only curves` gives them.
+//! No plain method meets every bar that a scene may set. The default is [`Method::FromEnds`], whose coefficients a piece of curve makes
+//! once; from points alone the two compensated methods cost alike. [`batch`] does more than 10⁹ a second at two ulp of max|P|. Largest
+//! errors and times over Horner's as `ogee bench kernels --only curves` gives them.
 
+use super::from_ends::{FromEnds, Nearer};
 use crate::math::Point;
 use crate::math::dd::{Dd, Factor, two_sum};
 
@@ -31,20 +33,23 @@ pub enum Method {
     Offset,
     /// De Casteljau with the error of every rounding carried along. Jiang, Li, Cheng & Su (2010).
     Compensated,
+    /// Nested in the distance from the nearer end, with the error of every rounding carried along; outside [0, 1] the method before.
+    FromEnds,
 }
 
 impl Method {
     /// All of them, the default last.
-    pub const ALL: [Method; 6] = [
+    pub const ALL: [Method; 7] = [
         Method::Horner,
         Method::Bernstein,
         Method::DeCasteljau,
         Method::VolkSchumaker,
         Method::Offset,
         Method::Compensated,
+        Method::FromEnds,
     ];
     /// The one that a curve uses unless told otherwise.
-    pub const DEFAULT: Method = Method::Compensated;
+    pub const DEFAULT: Method = Method::FromEnds;
 
     /// The name in reports.
     pub const fn name(self) -> &'static str {
@@ -55,6 +60,7 @@ impl Method {
             Method::VolkSchumaker => "volk_schumaker",
             Method::Offset => "offset",
             Method::Compensated => "compensated",
+            Method::FromEnds => "from_ends",
         }
     }
 
@@ -67,8 +73,20 @@ impl Method {
             Method::VolkSchumaker => volk_schumaker(points, t),
             Method::Offset => offset(points, t),
             Method::Compensated => compensated(&points.map(Dd::from), |_| Local::unit(t)).hi,
+            Method::FromEnds => from_ends(&points.map(Dd::from), t),
         }
     }
+}
+
+/// The value from the nearer end; outside [0, 1] by the triangle.
+fn from_ends<P: Point>(points: &[Dd<P>; 4], t: f64) -> P {
+    if (0.0..=1.0).contains(&t) {
+        let value = FromEnds::new(points).at(Nearer::unit(t));
+        if value.is_finite() {
+            return value;
+        }
+    }
+    compensated(points, |_| Local::unit(t)).hi
 }
 
 /// Monomial coefficients, made once for many evaluations by Horner's rule.

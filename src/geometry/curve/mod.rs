@@ -14,6 +14,7 @@ mod error;
 pub mod evaluate;
 #[cfg(test)]
 mod families;
+mod from_ends;
 #[cfg(test)]
 mod laws;
 mod natural;

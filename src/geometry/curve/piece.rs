@@ -1,6 +1,7 @@
 //! One cubic piece of a curve over its own interval of the curve's parameter.
 
 use super::evaluate::{Local, Method, compensated};
+use super::from_ends::{FromEnds, Nearer};
 use crate::math::{Dd, Point};
 
 /// A cubic over `[start, end]`. Its Bézier points are kept to 106 bits, so that a change of basis or a split costs no accuracy.
@@ -11,6 +12,7 @@ pub struct Piece<P> {
     /// 1 / (end − start).
     per_width: Dd,
     bezier: [Dd<P>; 4],
+    from_ends: FromEnds<P>,
     /// Bézier points of γ′, rounded: the fast way to speeds.
     hodograph: [P; 3],
 }
@@ -20,7 +22,8 @@ impl<P: Point> Piece<P> {
     pub(crate) fn new(start: f64, end: f64, bezier: [Dd<P>; 4]) -> Self {
         let per_width = Dd::from(1.0).over(Dd::difference(end, start));
         let slope = |i: usize| (bezier[i + 1] - bezier[i]).scaled(3.0).times(per_width).value();
-        Piece { start, end, per_width, bezier, hodograph: [slope(0), slope(1), slope(2)] }
+        let from_ends = FromEnds::new(&bezier);
+        Piece { start, end, per_width, bezier, from_ends, hodograph: [slope(0), slope(1), slope(2)] }
     }
 
     /// First parameter.
@@ -71,14 +74,32 @@ impl<P: Point> Piece<P> {
     /// γ(t), for any real t: outside the piece's interval the cubic goes on.
     #[inline]
     pub fn at(&self, t: f64) -> P {
+        if t >= self.start && t <= self.end {
+            let value = self.from_ends.at(self.nearer(t));
+            if value.is_finite() {
+                return value;
+            }
+        }
         let local = self.local(t);
         compensated(&self.bezier, |_| local).hi
+    }
+
+    /// The same for t inside the piece, of which only the nearer end is asked.
+    #[inline(always)]
+    fn nearer(&self, t: f64) -> Nearer {
+        if self.start == 0.0 && self.end == 1.0 {
+            return Nearer::unit(t);
+        }
+        let from_start = t - self.start <= self.end - t;
+        let way = if from_start { Dd::difference(t, self.start) } else { Dd::difference(self.end, t) };
+        Nearer { from_start, distance: way.times(self.per_width) }
     }
 
     /// γ(t) by another method than the default, from rounded Bézier points.
     pub fn at_by(&self, method: Method, t: f64) -> P {
         match method {
-            Method::Compensated => self.at(t),
+            Method::FromEnds => self.at(t),
+            Method::Compensated => compensated(&self.bezier, |_| self.local(t)).hi,
             Method::Horner
             | Method::Bernstein
             | Method::DeCasteljau
@@ -90,6 +111,9 @@ impl<P: Point> Piece<P> {
     /// The blossom F(a, b, c): symmetric in its arguments to the last bit, affine in each, and F(t, t, t) = [`Piece::at`] (t) to
     /// the last bit. Arguments may be any reals.
     pub fn blossom(&self, a: f64, b: f64, c: f64) -> P {
+        if a == b && b == c {
+            return self.at(a);
+        }
         let mut arguments = [a, b, c];
         arguments.sort_by(f64::total_cmp);
         let local = arguments.map(|t| self.local(t));

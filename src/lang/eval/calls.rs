@@ -3,11 +3,12 @@
 use super::slots::{Captured, Slot};
 use super::{Around, Call, Evaluator, Flow, Produced};
 use crate::diag::{Code, Diagnostic, Span};
+use crate::geometry::any_curve::AnyCurve;
 use crate::lang::builtins;
 use crate::lang::coerce::shown;
-use crate::lang::members::{self, Ask, Form, Member};
+use crate::lang::members::{self, Ask, Form, Member, curves};
 use crate::lang::resolve::program::{
-    Access, Argument, CallBuiltin, CallFunction, CallMethod, CallValue, FunctionBody, FunctionId,
+    Access, Argument, CallBuiltin, CallFunction, CallMethod, CallValue, Expr, FunctionBody, FunctionId,
 };
 use crate::lang::table::{Arguments, Builtin, BuiltinBody, Context, Outcome, Reported};
 use crate::lang::value::Value;
@@ -133,6 +134,11 @@ impl<'p> Evaluator<'p> {
 
     pub(super) fn call_value(&mut self, call: &'p CallValue, span: Span) -> Outcome {
         let callee = self.expr(&call.callee);
+        if let (Ok(Value::Curve(curve)), [Argument { name: None, value: argument }]) =
+            (&callee, &call.arguments[..])
+        {
+            return self.call_curve(curve, argument, span);
+        }
         if let Ok(value) = &callee
             && let Some(member) = members::call_of(value)
         {
@@ -153,6 +159,21 @@ impl<'p> Evaluator<'p> {
             Value::Builtin(builtin) => self.call_builtin_value(builtin, &call.arguments, arguments, span),
             other => Err(self.not_callable(other, call.callee.span)),
         }
+    }
+
+    /// A curve at a number, without the ceremony of members: loops do it by the million.
+    fn call_curve(&mut self, curve: &AnyCurve, argument: &'p Expr, span: Span) -> Outcome {
+        let given = match self.number(argument) {
+            Some(t) => match curves::point_at(curve, t) {
+                Ok(point) => return Ok(point),
+                Err(_) => Value::Number(t),
+            },
+            None => self.spilled()?,
+        };
+        let value = Value::Curve(curve.clone());
+        let member = members::call_of(&value).expect("curves are called");
+        let arguments = Arguments { values: &[given], spans: &[argument.span], span };
+        (member.body)(self, &Ask { member, value: &value, arguments: &arguments })
     }
 
     fn argument_values(&mut self, arguments: &'p [Argument]) -> Outcome<Vec<Value>> {

@@ -117,15 +117,20 @@ fn put<P: Point>(point: P, to: &mut [f64]) {
     }
 }
 
-/// The point at t, the one member that loops call by the million: no step more than it takes.
+/// The point at t.
 pub fn at(ctx: &mut dyn Context, ask: &Ask<'_>) -> Outcome {
     let t = ask.number(ctx, 0)?;
-    let point = match curve(ask) {
+    point_at(curve(ask), t).map_err(|error| faults::report(ctx, ask, &error))
+}
+
+/// The point at t as a value: what loops call by the million.
+#[inline]
+pub fn point_at(curve: &AnyCurve, t: f64) -> Result<Value, CurveError> {
+    match curve {
         AnyCurve::Numbers(c) => c.at(t).map(Value::Number),
         AnyCurve::Plane(c) => c.at(t).map(Value::Vector2),
         AnyCurve::Space(c) => c.at(t).map(Value::Vector3),
-    };
-    point.map_err(|error| faults::report(ctx, ask, &error))
+    }
 }
 
 /// Members without state.
