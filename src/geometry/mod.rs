@@ -1,8 +1,10 @@
-//! Shapes as numbers, without spans: meshes, bases, curves and what is measured on them, patches; skeletons to come.
+//! Shapes as numbers, without spans: meshes, bases, curves and what is measured on them, patches, surfaces along curves;
+//! skeletons to come.
 
 pub mod any_curve;
 pub mod arc_length;
 pub mod basis;
+pub mod boxes;
 pub mod closest;
 pub mod curve;
 pub mod frame;
@@ -11,3 +13,4 @@ pub mod measured;
 pub mod mesh;
 pub mod patch;
 pub mod path;
+pub mod surface;

@@ -23,6 +23,9 @@ impl Default for Affine {
     }
 }
 
+/// Rounds of three rotations each: convergence is quadratic, and five reach rounding.
+const JACOBI_SWEEPS: usize = 6;
+
 impl Affine {
     /// The identity.
     pub const IDENTITY: Affine = Affine {
@@ -109,6 +112,30 @@ impl Affine {
     /// determinant.
     pub fn normal(&self, n: DVec3) -> DVec3 {
         self.inverse_linear.transpose() * n
+    }
+
+    /// By how much it shortens and lengthens at most: the least and greatest singular value of the linear part, by Jacobi's rotations
+    /// of its Gram matrix.
+    pub fn stretch(&self) -> (f64, f64) {
+        let mut gram = self.linear.transpose() * self.linear;
+        for (p, q) in [(0, 1), (0, 2), (1, 2)].into_iter().cycle().take(3 * JACOBI_SWEEPS) {
+            let off = gram.col(p)[q];
+            if off == 0.0 {
+                continue;
+            }
+            let half = 0.5 * (gram.col(q)[q] - gram.col(p)[p]) / off;
+            let tangent = half.signum() / (half.abs() + (half * half + 1.0).sqrt());
+            let cosine = 1.0 / (tangent * tangent + 1.0).sqrt();
+            let mut turn = DMat3::IDENTITY;
+            turn.col_mut(p)[p] = cosine;
+            turn.col_mut(q)[q] = cosine;
+            turn.col_mut(q)[p] = tangent * cosine;
+            turn.col_mut(p)[q] = -tangent * cosine;
+            gram = turn.transpose() * gram * turn;
+        }
+        let squares = [0, 1, 2].map(|k| gram.col(k)[k].max(0.0));
+        let least = squares.iter().copied().fold(f64::INFINITY, f64::min);
+        (least.sqrt(), squares.iter().copied().fold(0.0, f64::max).sqrt())
     }
 
     /// True for a map that mirrors.

@@ -9,9 +9,9 @@
 //! The pieces are cut once into parts that are nearly flat, under a tree of boxes, so that most parts are settled at the first look.
 
 use super::Bicubic;
-use crate::geometry::curve::any_across;
-use crate::math::error::{UNIT_ROUNDOFF, gamma};
-use crate::math::{Aabb, Point};
+use crate::geometry::boxes::{BoxTree, Line};
+use crate::math::Aabb;
+use crate::math::error::UNIT_ROUNDOFF;
 use glam::DVec3;
 
 /// A point where a ray meets a piece.
@@ -46,7 +46,7 @@ pub struct Hits {
 pub struct PatchTree {
     pieces: Vec<Bicubic>,
     parts: Vec<Part>,
-    nodes: Vec<Node>,
+    tree: BoxTree,
 }
 
 #[derive(Clone, Debug)]
@@ -57,15 +57,6 @@ struct Part {
     points: [[DVec3; 4]; 4],
     /// Largest magnitude of a coordinate.
     size: f64,
-}
-
-#[derive(Clone, Copy, Debug)]
-struct Node {
-    bounds: Aabb,
-    /// Of a leaf: its first part. Of an inner node: its second child; the first follows it.
-    index: u32,
-    /// Of a leaf: how many parts. Of an inner node: 0.
-    count: u32,
 }
 
 /// A piece is cut until its control points are this close to evenly spaced, as a part of their spacing: the measure of
@@ -84,12 +75,8 @@ impl PatchTree {
             let whole = Part::new(index as u32, piece, (0.0, 1.0), (0.0, 1.0));
             cut(whole, (0, 0), &mut parts);
         }
-        let mut nodes = Vec::with_capacity(parts.len());
-        if !parts.is_empty() {
-            let n = parts.len();
-            build(&mut parts, 0, n, &mut nodes);
-        }
-        PatchTree { pieces: pieces.to_vec(), parts, nodes }
+        let tree = BoxTree::build(&mut parts, LEAF, Part::bounds);
+        PatchTree { pieces: pieces.to_vec(), parts, tree }
     }
 
     /// The pieces it was made from.
@@ -99,19 +86,19 @@ impl PatchTree {
 
     /// The box around all parts; empty where there are none.
     pub fn bounds(&self) -> Aabb {
-        self.nodes.first().map_or(Aabb::EMPTY, |node| node.bounds)
+        self.tree.bounds()
     }
 
     /// Bytes that the parts and their tree take.
     pub fn bytes(&self) -> usize {
-        size_of_val(self.parts.as_slice()) + size_of_val(self.nodes.as_slice())
+        size_of_val(self.parts.as_slice()) + self.tree.bytes()
     }
 
     /// Every hit with `t_min` ≤ t ≤ `t_max`. `direction` of any length but 0.
     pub fn all_hits(&self, origin: DVec3, direction: DVec3, t_min: f64, t_max: f64) -> Hits {
         let mut found = Hits::default();
         let Some(ray) = Ray::new(origin, direction) else { return found };
-        let (near, far) = (t_min * ray.length, t_max * ray.length);
+        let (near, far) = (t_min * ray.line.length, t_max * ray.line.length);
         self.walk(&ray, near, far, |part, near, far| {
             found.unresolved |= !self.meet(&ray, part, near, far, &mut |hit| found.hits.push(hit));
             far
@@ -125,13 +112,13 @@ impl PatchTree {
     pub fn first_hit(&self, origin: DVec3, direction: DVec3, t_min: f64, t_max: f64) -> Option<PatchHit> {
         let ray = Ray::new(origin, direction)?;
         let mut best: Option<PatchHit> = None;
-        self.walk(&ray, t_min * ray.length, t_max * ray.length, |part, near, far| {
+        self.walk(&ray, t_min * ray.line.length, t_max * ray.line.length, |part, near, far| {
             self.meet(&ray, part, near, far, &mut |hit| {
                 if best.is_none_or(|b| hit.t < b.t) {
                     best = Some(hit);
                 }
             });
-            best.map_or(far, |b| (b.t * ray.length).min(far))
+            best.map_or(far, |b| (b.t * ray.line.length).min(far))
         });
         best
     }
@@ -140,7 +127,7 @@ impl PatchTree {
     pub fn any_hit(&self, origin: DVec3, direction: DVec3, t_min: f64, t_max: f64) -> bool {
         let Some(ray) = Ray::new(origin, direction) else { return false };
         let mut hit = false;
-        self.walk(&ray, t_min * ray.length, t_max * ray.length, |part, near, far| {
+        self.walk(&ray, t_min * ray.line.length, t_max * ray.line.length, |part, near, far| {
             self.meet(&ray, part, near, far, &mut |_| hit = true);
             if hit { f64::NEG_INFINITY } else { far }
         });
@@ -148,34 +135,13 @@ impl PatchTree {
     }
 
     /// Visits the parts whose boxes the ray meets, near ones first. `visit` returns the new far end.
-    fn walk(&self, ray: &Ray, near: f64, mut far: f64, mut visit: impl FnMut(&Part, f64, f64) -> f64) {
-        if self.nodes.is_empty() {
-            return;
-        }
-        let mut stack: Vec<(u32, f64)> = Vec::with_capacity(64);
-        let entry = |index: u32, far: f64| ray.entry(&self.nodes[index as usize].bounds, near, far);
-        stack.extend(entry(0, far).map(|t| (0, t)));
-        while let Some((index, t)) = stack.pop() {
-            if t > far {
-                continue;
+    fn walk(&self, ray: &Ray, near: f64, far: f64, mut visit: impl FnMut(&Part, f64, f64) -> f64) {
+        self.tree.walk(&ray.line, near, far, |range, mut far| {
+            for part in &self.parts[range] {
+                far = visit(part, near, far);
             }
-            let node = &self.nodes[index as usize];
-            if node.count > 0 {
-                let first = node.index as usize;
-                for part in &self.parts[first..first + node.count as usize] {
-                    far = visit(part, near, far);
-                }
-                continue;
-            }
-            let (a, b) = (index + 1, node.index);
-            match (entry(a, far), entry(b, far)) {
-                (Some(ta), Some(tb)) if ta <= tb => stack.extend([(b, tb), (a, ta)]),
-                (Some(ta), Some(tb)) => stack.extend([(a, ta), (b, tb)]),
-                (Some(ta), None) => stack.push((a, ta)),
-                (None, Some(tb)) => stack.push((b, tb)),
-                (None, None) => {}
-            }
-        }
+            far
+        });
     }
 
     /// Finds the roots of one part. False where it ran out of work.
@@ -187,10 +153,10 @@ impl PatchTree {
         let piece = &self.pieces[part.piece as usize];
         seen.roots(|u, v, uncertainty| {
             if let Some(hit) = polish(ray, piece, part, u, v, uncertainty, seen.rounding) {
-                // The ends are widened by rounding alone, as the caller's own t was.
-                let t = hit.t * ray.length;
+                // The far end is widened by rounding alone, as the caller's own t was; the near one is exact: a ray leaves its surface.
+                let t = hit.t * ray.line.length;
                 let slack = seen.rounding;
-                if t >= near - slack && t <= far + slack {
+                if t >= near && t <= far + slack {
                     found(hit);
                 }
             }
@@ -201,7 +167,7 @@ impl PatchTree {
     fn merge_seams(&self, ray: &Ray, hits: &mut Vec<PatchHit>) {
         let crossing = |h: &PatchHit| {
             let [_, du, dv] = self.pieces[h.piece].first_order(h.u, h.v);
-            du.cross(dv).dot(ray.direction)
+            du.cross(dv).dot(ray.line.direction)
         };
         let mut kept: Vec<PatchHit> = Vec::with_capacity(hits.len());
         for hit in hits.iter() {
@@ -226,7 +192,7 @@ impl PatchTree {
             let [_, du, dv] = self.pieces[h.piece].first_order(h.u, h.v);
             (du.length() + dv.length()) * blur
         };
-        let scale = a.point.abs().max_element() + ray.origin.abs().max_element();
+        let scale = a.point.abs().max_element() + ray.line.origin.abs().max_element();
         on_edge(a)
             && on_edge(b)
             && a.point.distance(b.point) <= reach(a) + reach(b) + 16.0 * UNIT_ROUNDOFF * scale
@@ -312,62 +278,16 @@ fn bending(p: &[[DVec3; 4]; 4]) -> f64 {
     second.fold(0.0, largest) + 0.5 * twist.fold(0.0, largest)
 }
 
-/// Lays out the tree over `parts[from..to]`, halved in the middle of the longest side of their centres.
-fn build(parts: &mut [Part], from: usize, to: usize, nodes: &mut Vec<Node>) -> u32 {
-    let own = nodes.len();
-    let bounds = parts[from..to].iter().fold(Aabb::EMPTY, |sum, part| sum.union(part.bounds()));
-    nodes.push(Node { bounds, index: from as u32, count: (to - from) as u32 });
-    if to - from > LEAF {
-        let centers = Aabb::of(parts[from..to].iter().map(|part| part.bounds().center()));
-        let axis = (0..3).max_by(|a, b| centers.size()[*a].total_cmp(&centers.size()[*b])).unwrap_or(0);
-        let middle = (from + to) / 2;
-        parts[from..to].select_nth_unstable_by(middle - from, |a, b| {
-            a.bounds().center()[axis].total_cmp(&b.bounds().center()[axis])
-        });
-        build(parts, from, middle, nodes);
-        let second = build(parts, middle, to, nodes);
-        nodes[own] = Node { bounds, index: second, count: 0 };
-    }
-    own as u32
-}
-
-/// A ray with a unit direction and two planes through it.
+/// A ray and two planes through it.
 struct Ray {
-    origin: DVec3,
-    direction: DVec3,
-    inverse: DVec3,
-    /// Length of the direction as given: t is measured in it.
-    length: f64,
+    line: Line,
     planes: [DVec3; 2],
 }
 
 impl Ray {
     fn new(origin: DVec3, direction: DVec3) -> Option<Ray> {
-        let unit = Point::unit(direction)?;
-        let first = any_across(unit);
-        let planes = [first, unit.cross(first)];
-        Some(Ray { origin, direction: unit, inverse: unit.recip(), length: Point::length(direction), planes })
-    }
-
-    /// Where the ray enters a box, if it does between `near` and `far`. Comparisons drop the NaN of 0 · ∞, and the far side is widened
-    /// by the rounding of its three operations.
-    fn entry(&self, b: &Aabb, near: f64, far: f64) -> Option<f64> {
-        let (mut enter, mut leave) = (near, far);
-        for axis in 0..3 {
-            let backwards = self.inverse[axis] < 0.0;
-            let (first, second) =
-                if backwards { (b.max[axis], b.min[axis]) } else { (b.min[axis], b.max[axis]) };
-            let t0 = (first - self.origin[axis]) * self.inverse[axis];
-            let t1 = (second - self.origin[axis]) * self.inverse[axis];
-            let t1 = t1 + t1.abs() * (2.0 * gamma(3));
-            if t0 > enter {
-                enter = t0;
-            }
-            if t1 < leave {
-                leave = t1;
-            }
-        }
-        (enter <= leave).then_some(enter)
+        let line = Line::new(origin, direction)?;
+        Some(Ray { line, planes: line.across() })
     }
 }
 
@@ -407,14 +327,14 @@ impl Seen {
         let mut net = Net { x: [0.0; 16], y: [0.0; 16] };
         let mut depth = (f64::INFINITY, f64::NEG_INFINITY);
         for (k, p) in part.points.iter().flatten().enumerate() {
-            let from = *p - ray.origin;
+            let from = *p - ray.line.origin;
             net.x[k] = ray.planes[0].dot(from);
             net.y[k] = ray.planes[1].dot(from);
-            let along = ray.direction.dot(from);
+            let along = ray.line.direction.dot(from);
             depth = (depth.0.min(along), depth.1.max(along));
         }
         // A difference, three products and two sums of unit vectors: below 4·√3·u of the operands; halving adds u a level.
-        let rounding = 16.0 * UNIT_ROUNDOFF * (part.size + ray.origin.abs().max_element());
+        let rounding = 16.0 * UNIT_ROUNDOFF * (part.size + ray.line.origin.abs().max_element());
         Seen { net, depth: (depth.0 - rounding, depth.1 + rounding), rounding }
     }
 
@@ -739,7 +659,7 @@ fn polish(
     let mut best = (f64::INFINITY, u, v, DVec3::ZERO);
     for _ in 0..3 {
         let [point, du, dv] = piece.first_order(u, v);
-        let from = point - ray.origin;
+        let from = point - ray.line.origin;
         let (x, y) = (ray.planes[0].dot(from), ray.planes[1].dot(from));
         let miss = x.abs().max(y.abs());
         if miss < best.0 {
@@ -760,10 +680,10 @@ fn polish(
     }
     let (miss, u, v, point) = best;
     // A place that halving held for a root, but rounding alone put there.
-    if miss > 16.0 * rounding {
+    if miss > 2.0 * rounding {
         return None;
     }
-    let t = ray.direction.dot(point - ray.origin) / ray.length;
+    let t = ray.line.direction.dot(point - ray.line.origin) / ray.line.length;
     let uncertainty = blur * wu.max(wv) + 4.0 * f64::EPSILON;
     t.is_finite().then_some(PatchHit { t, piece: part.piece as usize, u, v, point, uncertainty })
 }

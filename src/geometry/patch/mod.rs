@@ -36,6 +36,19 @@ pub enum Layout {
     Loose,
 }
 
+impl Layout {
+    /// (u, v) of the whole for a place in one of its pieces; of loose pieces the piece's own.
+    pub fn global_uv(self, piece: usize, u: f64, v: f64) -> (f64, f64) {
+        match self {
+            Layout::Grid { rows, columns } => {
+                let (r, c) = (piece / columns, piece % columns);
+                ((r as f64 + u) / rows as f64, (c as f64 + v) / columns as f64)
+            }
+            Layout::Loose => (u, v),
+        }
+    }
+}
+
 /// Why a patch could not be made, or not be asked that.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum PatchError {
@@ -146,6 +159,13 @@ impl Patch {
         Patch { pieces, layout: Layout::Grid { rows, columns } }
     }
 
+    /// The same with each control point moved; by an affine map, the image of the surface.
+    #[must_use]
+    pub fn map(&self, f: impl Fn(DVec3) -> DVec3) -> Patch {
+        let moved = |piece: &Bicubic| Bicubic { points: piece.points.map(|row| row.map(&f)) };
+        Patch { pieces: self.pieces.iter().map(moved).collect(), layout: self.layout }
+    }
+
     /// The pieces.
     pub fn pieces(&self) -> &[Bicubic] {
         &self.pieces
@@ -192,13 +212,7 @@ impl Patch {
 
     /// (u, v) of the patch for a place in one of its pieces.
     pub fn global_uv(&self, piece: usize, u: f64, v: f64) -> (f64, f64) {
-        match self.layout {
-            Layout::Grid { rows, columns } => {
-                let (r, c) = (piece / columns, piece % columns);
-                ((r as f64 + u) / rows as f64, (c as f64 + v) / columns as f64)
-            }
-            Layout::Loose => (u, v),
-        }
+        self.layout.global_uv(piece, u, v)
     }
 
     /// The point at (u, v).
