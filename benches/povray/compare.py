@@ -20,6 +20,7 @@ CASES = [
     ("flat", 640, 480, [], [], 1 / 1.5, "render"),
     ("flake", 800, 600, ["Declare=D=5"], ["--set", "levels=5"], 3, "render"),
     ("mesh", 1024, 768, [], [], 4, "render"),
+    ("patches", 1024, 768, [], [], 3, "render"),
 ]
 
 

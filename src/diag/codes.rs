@@ -90,6 +90,7 @@ codes! {
     MeshRepaired = "W0503", "a mesh file was mended on reading";
     MissingMaterialFile = "W0504", "a mesh's material file or texture is missing";
     BadImage = "E0505", "an image cannot be read";
+    BadPatch = "E0507", "a patch file cannot be used";
     // 6: the scene as a whole
     NoCamera = "E0601", "the scene has no camera";
     NoLight = "W0602", "the scene has no light";

@@ -40,7 +40,11 @@ fn kinds_of_chapter(chapter: &str) -> Vec<&'static Kind> {
 
 /// Which types of value have their members told at the end of which chapter.
 fn families_of_chapter(chapter: &str) -> impl Iterator<Item = &'static Family> {
-    let named = if chapter == "curves" { &["curve", "transform"][..] } else { &[] };
+    let named: &[&str] = match chapter {
+        "curves" => &["curve", "transform"],
+        "objects" => &["patch"],
+        _ => &[],
+    };
     FAMILIES.iter().copied().filter(move |family| named.contains(&family.name))
 }
 

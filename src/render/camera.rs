@@ -5,7 +5,7 @@
 
 use crate::math::elementary::{sin_cos, sin_cos_degrees, tan};
 use crate::scene::{Camera, Projection};
-use crate::world::{Ray, RayKind};
+use crate::world::{Footprint, Ray, RayKind};
 use glam::{DVec2, DVec3};
 use std::f64::consts::{PI, TAU};
 
@@ -97,6 +97,20 @@ impl View {
             Projected::Panorama => (self.eye, self.panorama(p), self.focus),
         };
         Some(self.through_lens(origin, toward, sharp, lens))
+    }
+
+    /// How large a pixel is where: of a perspective at the corners of the picture, where a distance from the eye shows largest.
+    pub fn footprint(&self) -> Footprint {
+        let (per_distance, constant) = match self.film {
+            Projected::Perspective(tangent) => {
+                let corner = 1.0 / (1.0 + tangent.length_squared()).sqrt();
+                (2.0 * tangent.y / self.size.y * corner, 0.0)
+            }
+            Projected::Orthographic(half) => (0.0, 2.0 * half.y / self.size.y),
+            Projected::Fisheye(scale) => (2.0 * scale / self.size.y, 0.0),
+            Projected::Panorama => ((TAU / self.size.x).min(PI / self.size.y), 0.0),
+        };
+        Footprint { eye: self.eye, per_distance, constant }
     }
 
     /// True where rays of one pixel differ by where they pass the lens.

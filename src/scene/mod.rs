@@ -8,6 +8,7 @@ pub mod material;
 pub mod object;
 pub mod settings;
 mod solid;
+pub mod surface;
 
 pub use camera::{Camera, Projection};
 pub use light::{Light, LightSource, Sky};
@@ -18,6 +19,9 @@ pub use material::{
 pub use object::{Cone, Csg, CsgOp, Disc, Hide, MeshSource, Node, Object, Rect, Shape, Torus, Triangle};
 pub use settings::{Accelerator, RenderSettings, ToneMap, TracerKind};
 pub use solid::{open_mesh, solid_fault};
+pub use surface::{
+    Along, ExtrudeSource, LatheSource, PatchMethod, PatchNet, PatchSource, Radius, Surface, TubeSource,
+};
 
 /// A colour or any triple of linear RGB: red, green, blue.
 pub type Rgb = glam::DVec3;

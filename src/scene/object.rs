@@ -1,6 +1,6 @@
 //! Objects: a shape, where it stands, what it is made of, and where in the text it was written.
 
-use super::{Light, Material};
+use super::{Light, Material, Surface};
 use crate::diag::Span;
 use crate::geometry::mesh::Mesh;
 use crate::math::Affine;
@@ -89,6 +89,8 @@ pub enum Shape {
     Triangle(Box<Triangle>),
     /// A mesh, shared between its placements.
     Mesh(Arc<MeshSource>),
+    /// A curved surface, shared between its placements.
+    Surface(Arc<Surface>),
     /// Children, shared between placements of the group.
     Group(Arc<[Node]>),
     /// Solids put together, shared between placements.
@@ -104,7 +106,7 @@ impl Shape {
             Shape::Sphere { .. } | Shape::Plane { .. } | Shape::Disc(_) | Shape::Rect(_) | Shape::Box(_) => {
                 &[]
             }
-            Shape::Cone(_) | Shape::Torus(_) | Shape::Triangle(_) | Shape::Mesh(_) => &[],
+            Shape::Cone(_) | Shape::Torus(_) | Shape::Triangle(_) | Shape::Mesh(_) | Shape::Surface(_) => &[],
         }
     }
 }

@@ -1,6 +1,6 @@
 //! What may be put together with solids, and what is said of what may not.
 
-use super::{MeshSource, Node, Object, Shape};
+use super::{MeshSource, Node, Object, Shape, Surface};
 use crate::diag::{Code, Diagnostic, Span};
 
 /// Why a node is no solid; none where it is one, or a group of which each member is asked on its own, or a mesh whose file tells.
@@ -23,6 +23,8 @@ pub fn solid_fault(node: &Node) -> Option<Diagnostic> {
         Shape::Disc(_) => Some(flat(object, "disc", "write a flat `cylinder` instead")),
         Shape::Rect(_) => Some(flat(object, "rect", "write a flat `box` instead")),
         Shape::Triangle(_) => Some(flat(object, "triangle", "write a closed `mesh` instead")),
+        Shape::Surface(surface) if surface.is_solid() => None,
+        Shape::Surface(surface) => Some(open_surface(surface, object.span)),
     }
 }
 
@@ -30,6 +32,19 @@ pub fn solid_fault(node: &Node) -> Option<Diagnostic> {
 pub fn open_mesh(span: Span) -> Diagnostic {
     Diagnostic::new(Code::NotSolid, span, "this mesh is not closed, so that it has no inside")
         .hint("a closed mesh has two faces at each edge: look for holes, and for faces that are given twice")
+}
+
+/// That a curved surface has open edges.
+fn open_surface(surface: &Surface, span: Span) -> Diagnostic {
+    let message = format!("this {} is not closed, so that it has no inside", surface.word());
+    let hint = match surface {
+        Surface::Tube(_) => "leave `caps open` away, or write `caps flat`",
+        Surface::Lathe(_) => "begin and end its profile on the axis, or close it",
+        Surface::Patch(_) | Surface::Extrude(_) => {
+            "a closed `mesh`, `lathe`, `tube` or `extrude` has an inside"
+        }
+    };
+    Diagnostic::new(Code::NotSolid, span, message).hint(hint)
 }
 
 fn flat(object: &Object, kind: &str, hint: &str) -> Diagnostic {

@@ -2,11 +2,12 @@
 //! `Entry`s, so that they cannot disagree.
 
 use crate::diag::{SourceMap, Span};
-use crate::math::Affine;
+use crate::geometry::path::Path;
+use crate::math::{Affine, Point};
 use crate::scene::{
-    Accelerator, Camera, Fresnel, Layers, Light, LightSource, Lobe, Material, MeshSource, Node, Object,
-    PatternKind, Projection, RenderSettings, Rgb, SampleInput, Scene, Shape, Sky, Texture, ToneMap,
-    TracerKind,
+    Accelerator, Along, Camera, Fresnel, Layers, Light, LightSource, Lobe, Material, MeshSource, Node,
+    Object, PatchMethod, PatchNet, PatchSource, PatternKind, Projection, Radius, RenderSettings, Rgb,
+    SampleInput, Scene, Shape, Sky, Surface, Texture, ToneMap, TracerKind,
 };
 use glam::DVec3;
 use serde_json::{Map, Value as Json, json};
@@ -205,6 +206,7 @@ fn shape_word(shape: &Shape) -> &'static str {
         Shape::Torus(_) => "torus",
         Shape::Triangle(_) => "triangle",
         Shape::Mesh(_) => "mesh",
+        Shape::Surface(surface) => surface.word(),
         Shape::Group(_) => "group",
         Shape::Csg(csg) => csg.op.word(),
     }
@@ -238,6 +240,7 @@ fn shape_properties(shape: &Shape) -> Vec<(&'static str, Json)> {
             properties
         }
         Shape::Mesh(mesh) => mesh_properties(mesh),
+        Shape::Surface(surface) => surface_properties(surface),
         Shape::Group(_) => vec![],
         Shape::Csg(csg) => csg.inverse.then(|| ("inverse", json!(true))).into_iter().collect(),
     }
@@ -254,6 +257,54 @@ fn mesh_properties(mesh: &MeshSource) -> Vec<(&'static str, Json)> {
             vec![("vertices", json!(mesh.positions.len())), ("triangles", json!(mesh.triangles.len()))]
         }
     }
+}
+
+fn surface_properties(surface: &Surface) -> Vec<(&'static str, Json)> {
+    match surface {
+        Surface::Patch(patch) => patch_properties(patch),
+        Surface::Tube(tube) => {
+            let radius = match &tube.radius {
+                Radius::Constant(radius) => json!(radius),
+                Radius::Along(curve) => path(&**curve),
+            };
+            let caps = format!("{:?}", tube.caps).to_lowercase();
+            vec![("along", path(&*tube.along)), ("radius", radius), ("caps", json!(caps))]
+        }
+        Surface::Lathe(lathe) => vec![("profile", path(&*lathe.profile)), ("angle", json!(lathe.angle))],
+        Surface::Extrude(extrude) => {
+            let along = match &extrude.along {
+                Along::Vector(v) => vector(*v),
+                Along::Path(curve) => path(&**curve),
+            };
+            vec![("outline", path(&*extrude.outline)), ("along", along)]
+        }
+    }
+}
+
+/// A curve by where it begins and ends.
+fn path<P: Point>(path: &dyn Path<P>) -> Json {
+    let (start, end) = path.domain();
+    let at = |t: f64| {
+        let p = path.position(t);
+        (0..P::DIMENSION).map(|axis| json!(p.coordinate(axis))).collect::<Vec<_>>()
+    };
+    json!({ "from": at(start), "to": at(end), "closed": path.closed() })
+}
+
+fn patch_properties(patch: &PatchSource) -> Vec<(&'static str, Json)> {
+    let mut properties = vec![match &patch.net {
+        PatchNet::File { path, .. } => ("file", quoted(&path.display().to_string())),
+        PatchNet::Inline(patch) => ("pieces", json!(patch.pieces().len())),
+    }];
+    properties.extend(patch.method.map(|method| {
+        let word = match method {
+            PatchMethod::Tessellated => "tessellated",
+            PatchMethod::Direct => "direct",
+        };
+        ("method", json!(word))
+    }));
+    properties.extend(patch.tolerance.map(|tolerance| ("tolerance", json!(tolerance))));
+    properties
 }
 
 fn push_transform(properties: &mut Vec<(&'static str, Json)>, transform: Option<&Affine>) {

@@ -71,7 +71,7 @@ pub fn prepare(
         }
     };
     let Some(view) = view else { return (None, found) };
-    let options = WorldOptions { accelerator: settings.accelerator };
+    let options = WorldOptions { accelerator: settings.accelerator, footprint: Some(view.footprint()) };
     let (world, of_world) = World::new(scene.nodes, &options, loader);
     found.extend(of_world);
     let tracer = tracer(&world, &settings, &mut found);

@@ -5,7 +5,9 @@ mod lights;
 mod meshes;
 mod shapes;
 mod solids;
+mod surfaces;
 mod survey;
+mod views;
 
 use super::aggregate::{Aggregate, Group, INHERITED, Instance, Item, Scope};
 use super::bvh::Tree;
@@ -19,6 +21,7 @@ use meshes::Meshes;
 use solids::Solids;
 use std::collections::HashMap;
 use std::sync::Arc;
+use surfaces::{Drawn, Surfaces};
 use survey::Survey;
 
 /// The number of the material of objects that have none: white plaster, diffuse 0.8.
@@ -44,6 +47,7 @@ pub(super) fn lower(
         placed: HashMap::new(),
         meshes: Meshes::default(),
         solids: Solids::default(),
+        surfaces: Surfaces::of(&nodes, options.footprint.as_ref()),
     };
     let world_group = lowering.group(Source::Owned(nodes.into_iter()), 0);
     lowering.aggregates[0] = Aggregate::Group(world_group);
@@ -73,6 +77,7 @@ struct Lowering<'a> {
     placed: HashMap<*const Node, (u32, Arc<[Node]>)>,
     meshes: Meshes,
     solids: Solids,
+    surfaces: Surfaces,
 }
 
 /// Nodes on their way. Those of a group that nobody else holds are taken out of it one by one, so that they are freed as they go and
@@ -220,6 +225,13 @@ impl Lowering<'_> {
             Shape::Csg(csg) => {
                 if let Some(csg) = self.csg(&csg, span) {
                     group.add(Item::Shape(shape::Shape::Csg(csg), transform), facts);
+                }
+                None
+            }
+            Shape::Surface(source) => {
+                match self.surface(source, span)? {
+                    Drawn::Shape(shape) => group.add(Item::Shape(shape, transform), facts),
+                    Drawn::Mesh(aggregate) => self.instance(group, aggregate, transform, facts),
                 }
                 None
             }

@@ -8,6 +8,7 @@ mod aggregate;
 pub mod bsdf;
 pub mod bvh;
 mod emitter;
+mod footprint;
 mod hit;
 pub mod light;
 pub mod lower;
@@ -17,6 +18,7 @@ pub mod shape;
 pub mod texture;
 
 pub use emitter::{Emitter, EmitterShape, PlacedLight};
+pub use footprint::Footprint;
 pub use hit::{Hit, SurfacePoint};
 
 use aggregate::Aggregate;
@@ -81,6 +83,9 @@ pub struct Provenance {
 pub struct WorldOptions {
     /// The tree over the shapes. A kd-tree is not built yet and counts as `bvh`.
     pub accelerator: Accelerator,
+    /// The pixels of the picture, which decide how finely patches are cut into triangles. None: no picture is made, and rays meet every
+    /// patch directly.
+    pub footprint: Option<Footprint>,
 }
 
 /// How large a world is.

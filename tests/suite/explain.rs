@@ -37,6 +37,7 @@ fn run(code: Code, example: &Example, all: &[Example]) -> Run {
         Code::NoCamera
             | Code::UnknownCamera
             | Code::UndefinedSample
+            | Code::BadPatch
             | Code::NonFiniteSample
             | Code::BadMesh
             | Code::MeshRepaired

@@ -27,7 +27,8 @@ fn node(object: Object) -> Node {
 }
 
 fn world_of(nodes: Vec<Node>, accelerator: Accelerator) -> World {
-    let (world, faults) = World::new(nodes, &WorldOptions { accelerator }, &DiskLoader);
+    let (world, faults) =
+        World::new(nodes, &WorldOptions { accelerator, ..WorldOptions::default() }, &DiskLoader);
     assert!(faults.is_empty(), "{faults:?}");
     world
 }

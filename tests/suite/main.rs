@@ -19,6 +19,7 @@ mod report;
 mod run;
 mod slips;
 mod stage;
+mod surfaces;
 mod syntax;
 mod tables;
 mod textures;

@@ -89,15 +89,20 @@ impl Lathe {
         if is_thin { Err(LatheError::Thin) } else { Ok(()) }
     }
 
+    /// Whether a profile bounds a solid: it is closed, or begins and ends on the axis.
+    pub fn is_closed(profile: &[Cubic<DVec2>], closed: bool) -> bool {
+        let slack = ON_AXIS * size_of(profile);
+        let ends = [profile[0].points[0], profile[profile.len() - 1].points[3]];
+        closed || ends.iter().all(|end| end.x <= slack) || ends[0].distance(ends[1]) <= slack
+    }
+
     /// Turns a profile of (x, y) about the y axis, by an angle in (0, 2π), from x toward −z; none is all the way. A profile that is closed,
     /// or begins and ends on the axis, bounds a solid, with flat faces at both ends of the angle; any other is a surface with two sides.
     /// Errors: those of [`Lathe::check`].
     pub fn new(profile: &[Cubic<DVec2>], closed: bool, angle: Option<f64>) -> Result<Lathe, LatheError> {
         Lathe::check(profile)?;
         let size = size_of(profile);
-        let ends = (profile[0].points[0], profile[profile.len() - 1].points[3]);
-        let by_axis = ends.0.x <= ON_AXIS * size && ends.1.x <= ON_AXIS * size;
-        let solid = closed || by_axis || ends.0 == ends.1;
+        let solid = Lathe::is_closed(profile, closed);
         let mut arcs: Vec<Arc> = profile.iter().flat_map(|c| tame(c, ON_AXIS * size)).collect();
         share(&mut arcs);
         let area: f64 = arcs.iter().map(Arc::area).sum();

@@ -226,6 +226,7 @@ fn emitter(ctx: &mut dyn Context, block: &Block) -> Outcome<Arc<Object>> {
         | Shape::Box(_)
         | Shape::Cone(_)
         | Shape::Torus(_)
+        | Shape::Surface(_)
         | Shape::Group(_)
         | Shape::Csg(_) => {
             let message = "an area light is a `rect`, `disc`, `sphere`, `triangle` or `mesh`";

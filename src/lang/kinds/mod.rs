@@ -13,6 +13,7 @@ mod settings;
 mod shapes;
 mod solids;
 pub mod splines;
+mod surfaces;
 #[cfg(test)]
 mod tests;
 mod unbuilt;
@@ -45,10 +46,10 @@ pub static ALL: &[&Kind] = &[
     &objects::MESH,
     &objects::GROUP,
     &splines::SPLINE,
-    &unbuilt::PATCH,
-    &unbuilt::TUBE,
-    &unbuilt::LATHE,
-    &unbuilt::EXTRUDE,
+    &surfaces::PATCH,
+    &surfaces::TUBE,
+    &surfaces::LATHE,
+    &surfaces::EXTRUDE,
     &unbuilt::IMPLICIT,
     &solids::UNION,
     &solids::INTERSECTION,

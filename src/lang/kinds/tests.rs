@@ -210,8 +210,8 @@ mod building {
     #[test]
     fn what_is_not_built_is_an_empty_group() {
         let mut ctx = Mock::default();
-        let tube = object(make(&mut ctx, block("tube", &[("along", &[w("path")])])));
-        assert!(matches!(&tube.shape, Shape::Group(nodes) if nodes.is_empty()));
+        let model = object(make(&mut ctx, block("model", &[("file", &[Value::text("man.glb")])])));
+        assert!(matches!(&model.shape, Shape::Group(nodes) if nodes.is_empty()));
         assert_eq!(ctx.codes(), ["W0308"]);
         assert!(make(&mut Mock::default(), block("skeleton", &[])).is_err());
         assert_eq!(codes_of_unbuilt(), ["W0308", "E0301"]);
@@ -219,7 +219,10 @@ mod building {
 
     fn codes_of_unbuilt() -> Vec<&'static str> {
         let mut ctx = Mock::default();
-        assert!(make(&mut ctx, block("tube", &[("along", &[w("path")]), ("radios", &[n(1.0)])])).is_err());
+        assert!(
+            make(&mut ctx, block("model", &[("file", &[Value::text("man.glb")]), ("clop", &[n(1.0)])]))
+                .is_err()
+        );
         ctx.codes()
     }
 

@@ -5,6 +5,7 @@
 
 mod ask;
 pub mod curves;
+mod patches;
 #[cfg(test)]
 mod tests;
 mod transforms;
@@ -79,7 +80,7 @@ pub struct Sampled {
 }
 
 /// Every family.
-pub static FAMILIES: &[&Family] = &[&curves::FAMILY, &transforms::FAMILY];
+pub static FAMILIES: &[&Family] = &[&curves::FAMILY, &patches::FAMILY, &transforms::FAMILY];
 
 impl Member {
     /// A field.

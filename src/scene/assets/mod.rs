@@ -1,5 +1,6 @@
 //! Files that scenes name: read through a [`Loader`], decoded into plain data, each once.
 
+pub mod bpt;
 mod cache;
 mod decode;
 pub mod image;

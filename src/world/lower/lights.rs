@@ -162,10 +162,11 @@ impl Gathering<'_> {
     }
 }
 
-/// A plane emits, but has no finite area to sample; solids put together emit, but nothing knows which part of a surface is left.
+/// A plane emits, but has no finite area to sample; solids put together emit, but nothing knows which part of a surface is left; curved
+/// surfaces that are met directly glow without being sampled.
 fn emitter_shape(shape: &Shape) -> Option<EmitterShape> {
     Some(match shape {
-        Shape::Plane(_) | Shape::Csg(_) => return None,
+        Shape::Plane(_) | Shape::Csg(_) | Shape::Patch(_) | Shape::Swept(_) => return None,
         Shape::Sphere(s) => EmitterShape::Sphere { center: s.center, radius: s.radius },
         Shape::Disc(s) => EmitterShape::Disc(s.0),
         Shape::Rect(s) => EmitterShape::Rect(s.shape),

@@ -67,7 +67,8 @@ impl Lowering<'_> {
         }
     }
 
-    fn keep_mesh(&mut self, mesh: Mesh, materials: Vec<Arc<Material>>, span: Span) -> Option<u32> {
+    /// Builds the tree of a mesh.
+    pub(super) fn keep_mesh(&mut self, mesh: Mesh, materials: Vec<Arc<Material>>, span: Span) -> Option<u32> {
         if mesh.triangles.is_empty() {
             let message = "this mesh has no triangles: nothing of it is seen";
             self.sink.push(Diagnostic::new(Code::MeshRepaired, span, message));

@@ -1,5 +1,6 @@
 //! Solids put together: a tree of the scene's nodes to a tree of parts in one space.
 
+use super::surfaces::Drawn;
 use super::{Around, Lowering, shapes};
 use crate::diag::{Code, Diagnostic, Span};
 use crate::scene::{self, CsgOp, Node, Object, Shape, solid_fault};
@@ -81,6 +82,12 @@ impl Lowering<'_> {
     }
 
     fn solid(&mut self, object: &Object) -> Option<Solid> {
+        if let Shape::Surface(source) = &object.shape {
+            return match self.surface(Arc::clone(source), object.span)? {
+                Drawn::Shape(shape) => Some(Solid::Shape(shape)),
+                Drawn::Mesh(_) => None,
+            };
+        }
         let Shape::Mesh(source) = &object.shape else {
             let shape = shapes::convert(object.shape.clone());
             let fault = |text| Diagnostic::new(Code::BadGeometry, object.span, text);

@@ -10,9 +10,11 @@ pub mod csg;
 mod cuboid;
 mod disc;
 pub mod mesh;
+mod patch;
 mod plane;
 mod rect;
 mod sphere;
+mod swept;
 #[cfg(test)]
 mod tests;
 mod torus;
@@ -23,9 +25,11 @@ pub use cone::Cone;
 pub use csg::Csg;
 pub use cuboid::Cuboid;
 pub use disc::Disc;
+pub use patch::PatchShape;
 pub use plane::Plane;
 pub use rect::Rect;
 pub use sphere::Sphere;
+pub use swept::{Form, Swept};
 pub use torus::Torus;
 pub use triangle::Triangle;
 
@@ -123,6 +127,8 @@ pub enum Shape {
     Torus(Box<Torus>),
     Triangle(Box<Triangle>),
     Csg(Arc<Csg>),
+    Patch(Arc<PatchShape>),
+    Swept(Arc<Swept>),
 }
 
 impl Shape {
@@ -138,6 +144,8 @@ impl Shape {
             Shape::Torus(s) => s.meet(ray, limit),
             Shape::Triangle(s) => s.meet(ray, limit),
             Shape::Csg(s) => s.meet(ray, limit),
+            Shape::Patch(s) => s.meet(ray, limit),
+            Shape::Swept(s) => s.meet(ray, limit),
         }
     }
 
@@ -154,6 +162,8 @@ impl Shape {
             Shape::Cuboid(s) => s.crossings(ray, out),
             Shape::Cone(s) => s.crossings(ray, out),
             Shape::Csg(s) => s.crossings(ray, out),
+            Shape::Patch(s) => s.crossings(ray, out),
+            Shape::Swept(s) => s.crossings(ray, out),
             Shape::Plane(_) | Shape::Disc(_) | Shape::Rect(_) | Shape::Triangle(_) => {
                 out.extend(self.meet(ray, f64::MAX));
             }
@@ -181,6 +191,8 @@ impl Shape {
             Shape::Torus(s) => s.surface(ray, meet),
             Shape::Triangle(s) => s.surface(meet),
             Shape::Csg(s) => s.surface(ray, meet).whole,
+            Shape::Patch(s) => s.surface(ray, meet),
+            Shape::Swept(s) => s.surface(ray, meet),
         }
     }
 
@@ -196,6 +208,8 @@ impl Shape {
             (Shape::Cone(s), _) => s.bounds(),
             (Shape::Torus(s), _) => s.bounds(),
             (Shape::Triangle(s), _) => s.bounds(),
+            (Shape::Patch(s), _) => s.bounds(),
+            (Shape::Swept(s), _) => s.bounds(),
         };
         transform.map_or(local, |transform| image_of(local, transform))
     }

@@ -1,12 +1,16 @@
 //! Values taken apart into the properties that build them.
 
-use crate::lang::kinds::{lights, objects, settings, shapes, solids};
+use crate::geometry::any_curve::AnyCurve;
+use crate::geometry::surface::tube::Caps;
+use crate::lang::kinds::{lights, objects, settings, shapes, solids, surfaces};
 use crate::lang::table::Kind;
 use crate::lang::value::{self, Given, Value};
 use crate::scene::{
-    Camera, Fresnel, Light, LightSource, Lobe, Material, MeshSource, Projection, Shape, Sky, Texture,
+    Along, Camera, Fresnel, Light, LightSource, Lobe, Material, MeshSource, Projection, Radius, Shape, Sky,
+    Surface, Texture,
 };
 use glam::DVec3;
+use std::sync::Arc;
 
 /// A property's name and values.
 pub type Part = (&'static str, Vec<Value>);
@@ -32,6 +36,12 @@ pub fn kind_of(shape: &Shape, asked: impl Fn(&str) -> bool) -> &'static Kind {
         Shape::Torus(_) => &shapes::TORUS,
         Shape::Triangle(_) => &shapes::TRIANGLE,
         Shape::Mesh(_) => &objects::MESH,
+        Shape::Surface(surface) => match &**surface {
+            Surface::Patch(_) => &surfaces::PATCH,
+            Surface::Tube(_) => &surfaces::TUBE,
+            Surface::Lathe(_) => &surfaces::LATHE,
+            Surface::Extrude(_) => &surfaces::EXTRUDE,
+        },
         Shape::Group(_) => &objects::GROUP,
         Shape::Csg(csg) => solids::kind_of(csg.op),
     }
@@ -85,7 +95,43 @@ pub fn shape(shape: &Shape, new: &[Given]) -> Option<Vec<Part>> {
             }
             MeshSource::File { .. } | MeshSource::Inline(_) => return None,
         },
+        Shape::Surface(surface) => return of_surface(surface),
         Shape::Group(_) | Shape::Csg(_) => return None,
+    })
+}
+
+/// Control points are not written back one by one; curves are values.
+fn of_surface(surface: &Surface) -> Option<Vec<Part>> {
+    let space = |curve: &Arc<_>| Value::Curve(AnyCurve::Space(Arc::clone(curve)));
+    let plane = |curve: &Arc<_>| Value::Curve(AnyCurve::Plane(Arc::clone(curve)));
+    Some(match surface {
+        Surface::Patch(_) => return None,
+        Surface::Tube(tube) => {
+            let radius = match &tube.radius {
+                Radius::Constant(radius) => Value::Number(*radius),
+                Radius::Along(curve) => Value::Curve(AnyCurve::Numbers(Arc::clone(curve))),
+            };
+            let caps = match tube.caps {
+                Caps::Round => "round",
+                Caps::Flat => "flat",
+                Caps::Open => "open",
+            };
+            vec![
+                one("along", space(&tube.along)),
+                one("radius", radius),
+                one("caps", Value::Word(caps.into())),
+            ]
+        }
+        Surface::Lathe(lathe) => {
+            vec![one("profile", plane(&lathe.profile)), one("angle", Value::Number(lathe.angle))]
+        }
+        Surface::Extrude(extrude) => {
+            let along = match &extrude.along {
+                Along::Vector(v) => vector(*v),
+                Along::Path(path) => space(path),
+            };
+            vec![one("outline", plane(&extrude.outline)), one("along", along)]
+        }
     })
 }
 
