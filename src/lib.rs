@@ -16,6 +16,7 @@
 //! | [`lang`] | names, values, evaluation, the table of kinds and of functions | scene, geometry, math, syntax, diag |
 //! | [`world`] | what rays see: shapes, trees, lights, BSDFs | scene, geometry, math, diag |
 //! | [`render`] | cameras, samplers, tracers, films, pictures on disk | world, scene, math, diag |
+//! | [`plot`] | figures: curves in a frame, as characters, SVG or pixels | math |
 //! | [`report`] | kernels measured: speed against error | render, world, scene, geometry, math |
 //! | [`session`] | the one door for the command line, the tests, the REPL | all of them |
 //!
@@ -31,6 +32,7 @@ pub mod diag;
 pub mod geometry;
 pub mod lang;
 pub mod math;
+pub mod plot;
 pub mod render;
 pub mod report;
 pub mod scene;

@@ -5,6 +5,7 @@ mod answer;
 pub mod dialogue;
 pub mod inspect;
 pub mod picture;
+pub mod plot;
 mod run;
 pub mod whole;
 

@@ -9,6 +9,7 @@ pub mod builtins;
 pub mod check;
 pub mod coerce;
 pub mod compile;
+pub mod complete;
 pub mod display;
 pub mod eval;
 pub mod kinds;

@@ -6,11 +6,13 @@
 use super::answer::Answer;
 use super::run::{self, Means, Root, State, on_deep_stack};
 use super::{Options, Session};
-use crate::diag::{Code, Diagnostic, Sink, SourceId, SourceMap};
+use crate::diag::{Code, Diagnostic, Sink, SourceId, SourceMap, Span};
+use crate::lang;
 use crate::lang::coerce;
+use crate::lang::complete::{self, Visible};
 use crate::lang::eval;
 use crate::lang::limits::exceeded;
-use crate::lang::resolve::known::Names;
+use crate::lang::resolve::known::{Names, Sort};
 use crate::lang::resolve::load::FileId;
 use crate::lang::resolve::program::Program;
 use crate::lang::value::Value;
@@ -114,9 +116,13 @@ enum Keeping {
 }
 
 /// The value of an expression, while the program that made it still stands.
-pub(super) struct Look<'l> {
-    pub state: &'l State,
+pub(super) struct Look<'l, 'm> {
+    pub state: &'l mut State,
+    pub means: &'l Means<'m>,
     pub value: &'l Value,
+    /// The expression.
+    pub span: Span,
+    pub sink: &'l mut Sink,
 }
 
 impl Dialogue<'_> {
@@ -133,6 +139,24 @@ impl Dialogue<'_> {
     /// The names of all earlier items, in alphabetical order.
     pub fn names(&self) -> Vec<&str> {
         self.state.known.names().into_iter().map(|(name, _)| name).collect()
+    }
+
+    /// What completion may offer beside the tables.
+    pub fn visible(&self) -> Visible {
+        let known = &self.state.known;
+        let member = |(name, sort): (&str, Sort)| {
+            let members = match sort {
+                Sort::Module => known.members_of(name)?.into_iter().map(str::to_owned).collect(),
+                Sort::Value(slot) | Sort::Var(slot) | Sort::Function(slot) => {
+                    members(&self.state.standing.globals.get(slot as usize)?.read().ok()?)
+                }
+            };
+            Some((name.to_owned(), members))
+        };
+        Visible {
+            names: self.names().into_iter().map(str::to_owned).collect(),
+            members: known.names().into_iter().filter_map(member).collect(),
+        }
     }
 
     /// Evaluates a file as if its items stood here; it is read anew, and so are its imports. `-` is standard input.
@@ -191,19 +215,19 @@ impl Dialogue<'_> {
         &mut self,
         text: &str,
         first_line: usize,
-        look: impl FnOnce(&Look<'_>) -> Option<R>,
+        look: impl FnOnce(&mut Look<'_, '_>) -> Option<R>,
     ) -> (Option<R>, Reply) {
         let mut seen = None;
         let reply = self.step(Keeping::Nothing, |state, means, sink| {
             let expr = run::parse(means, LINES, text, first_line, sink)?;
-            let (source, tree) = (expr.span.source, one_placement(expr));
-            let file = state.reading(means, sink).root_tree(Path::new(""), source, tree);
+            let span = expr.span;
+            let file = state.reading(means, sink).root_tree(Path::new(""), span.source, one_placement(expr));
             let (names, mut ran) = answer(state, means, file, &run::Settings::new(), sink)?;
             let is_answer = |said: &eval::Said| matches!(said, eval::Said::Answer(_));
             if let Some(i) = ran.said.iter().rposition(is_answer)
                 && let eval::Said::Answer(value) = ran.said.remove(i)
             {
-                seen = look(&Look { state, value: &value });
+                seen = look(&mut Look { state, means, value: &value, span, sink });
             }
             Some((names, ran))
         });
@@ -289,6 +313,19 @@ fn answer(
         return None;
     }
     Some((names, state.run(means, Some(file), sink)))
+}
+
+/// What stands behind a dot after a value.
+fn members(value: &Value) -> Vec<String> {
+    let names: Vec<&str> = match (value, lang::members::family(value)) {
+        (Value::Record(record), _) => record.parts.iter().map(|(name, _)| *name).collect(),
+        (_, Some(family)) => complete::names_of(family).collect(),
+        (_, None) => match lang::builtins::components(value) {
+            Some((_, n)) if n > 1 => complete::LETTERS.into_iter().take(n).collect(),
+            _ => Vec::new(),
+        },
+    };
+    names.into_iter().map(str::to_owned).collect()
 }
 
 /// The sort of a value in words; a function with its parameters.

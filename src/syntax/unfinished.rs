@@ -6,63 +6,78 @@ const WANTING: &[u8] = b"+-*/%^,=?:|&<";
 
 /// Whether more is to come. A blank line ends a text that only its last sign keeps open.
 pub fn is_unfinished(text: &str) -> bool {
-    match scan(text.as_bytes()) {
-        End::Open => true,
-        End::Faulty => false,
-        End::Closed(last) => {
-            let ends_blank = text.rsplit_once('\n').is_some_and(|(_, line)| line.trim().is_empty());
-            !ends_blank && last.is_some_and(|sign| WANTING.contains(&sign))
-        }
+    let end = End::of(text);
+    if end.faulty || end.open.iter().any(|(closer, _)| *closer == b'"') {
+        return false;
     }
+    let ends_blank = text.rsplit_once('\n').is_some_and(|(_, line)| line.trim().is_empty());
+    end.in_comment || !end.open.is_empty() || (!ends_blank && WANTING.contains(&end.last))
 }
 
-enum End {
-    /// Something is open.
-    Open,
+/// How a text ends.
+#[derive(Debug, Default, PartialEq, Eq)]
+pub struct End {
+    /// What is open, outermost first: the sign that would close it, and the place of the one that opened it.
+    pub open: Vec<(u8, usize)>,
+    /// It ends within a comment `/* … */`.
+    pub in_comment: bool,
+    /// It ends within a comment `// …`.
+    pub in_remark: bool,
     /// Brackets close in a wrong order, or a text does not end on its line: no further line mends that.
-    Faulty,
-    /// All is closed; the last byte that is neither blank nor comment.
-    Closed(Option<u8>),
+    pub faulty: bool,
+    /// The last byte that is neither blank nor comment; 0 where there is none.
+    pub last: u8,
 }
 
-fn scan(text: &[u8]) -> End {
-    let mut open: Vec<u8> = Vec::new();
-    let mut last = None;
-    let mut at = 0;
-    while at < text.len() {
-        let byte = text[at];
-        let in_text = open.last() == Some(&b'"');
-        match (byte, text.get(at + 1)) {
-            (b'\n', _) if open.contains(&b'"') => return End::Faulty,
-            (b'\\', _) if in_text => at += 1,
-            (b'/', Some(b'/')) if !in_text => {
-                at += text[at..].iter().position(|b| *b == b'\n').unwrap_or(text.len());
-                continue;
-            }
-            (b'/', Some(b'*')) if !in_text => match comment(&text[at..]) {
-                Some(len) => {
-                    at += len;
-                    continue;
+impl End {
+    /// Reads a text to its end, or to where it is faulty.
+    pub fn of(text: &str) -> End {
+        let text = text.as_bytes();
+        let mut end = End::default();
+        let mut at = 0;
+        while at < text.len() && !end.faulty {
+            at += match (&text[at..], end.in_text()) {
+                ([b'/', b'/', ..], false) => {
+                    let len = text[at..].iter().position(|b| *b == b'\n');
+                    end.in_remark = len.is_none();
+                    len.unwrap_or(text.len())
                 }
-                None => return End::Open,
-            },
-            (b'"', _) if in_text => drop(open.pop()),
-            (b'"', _) => open.push(b'"'),
-            (b'{', _) => open.push(b'}'),
-            (b'(', _) if !in_text => open.push(b')'),
-            (b'[', _) if !in_text => open.push(b']'),
-            (b')' | b']' | b'}', _) if !in_text && open.pop() != Some(byte) => return End::Faulty,
+                ([b'/', b'*', ..], false) => {
+                    let len = comment(&text[at..]);
+                    end.in_comment = len.is_none();
+                    len.unwrap_or(text.len())
+                }
+                ([b'\\', _, ..], true) => 2,
+                _ => {
+                    end.read(text[at], at);
+                    1
+                }
+            };
+        }
+        end
+    }
+
+    /// It ends within a text.
+    pub fn in_text(&self) -> bool {
+        self.open.last().is_some_and(|(closer, _)| *closer == b'"')
+    }
+
+    fn read(&mut self, byte: u8, at: usize) {
+        match (byte, self.in_text()) {
+            (b'\n', _) => self.faulty = self.open.iter().any(|(closer, _)| *closer == b'"'),
+            (b'"', true) => drop(self.open.pop()),
+            (b'"', false) => self.open.push((b'"', at)),
+            (b'{', _) => self.open.push((b'}', at)),
+            (b'(', false) => self.open.push((b')', at)),
+            (b'[', false) => self.open.push((b']', at)),
+            (b')' | b']' | b'}', false) => {
+                self.faulty = self.open.pop().is_none_or(|(closer, _)| closer != byte);
+            }
             _ => {}
         }
         if !byte.is_ascii_whitespace() {
-            last = Some(byte);
+            self.last = byte;
         }
-        at += 1;
-    }
-    match open {
-        open if open.is_empty() => End::Closed(last),
-        open if open.contains(&b'"') => End::Faulty,
-        _ => End::Open,
     }
 }
 
@@ -119,6 +134,7 @@ mod tests {
             "/* { */ 1",
             "sphere { radius 1 }",
             "f(]",
+            "1 // {",
             "\"a",
             "f(\"a\\\"",
             "f(\"a {1",

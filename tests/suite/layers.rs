@@ -12,8 +12,9 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("lang", &["scene", "geometry", "math", "syntax", "diag"]),
     ("world", &["scene", "geometry", "math", "diag"]),
     ("render", &["world", "scene", "math", "diag"]),
-    ("report", &["render", "world", "scene", "geometry", "math"]),
-    ("session", &["render", "world", "lang", "scene", "geometry", "math", "syntax", "diag"]),
+    ("plot", &["math"]),
+    ("report", &["plot", "render", "world", "scene", "geometry", "math"]),
+    ("session", &["plot", "render", "world", "lang", "scene", "geometry", "math", "syntax", "diag"]),
 ];
 
 fn rust_files(folder: &Path) -> Vec<PathBuf> {

@@ -185,3 +185,56 @@ fn the_transcripts_of_the_page_are_what_happens() {
         assert_eq!(run.out(), shown, "{typed}");
     }
 }
+
+#[test]
+fn functions_and_curves_are_plotted_in_characters() {
+    let run = repl(":plot x => sin(x), 0, 6.28\n").expect(0);
+    let lines: Vec<&str> = run.out().lines().collect();
+    assert_eq!(lines.len(), 20);
+    assert!(lines[0].contains("x => sin(x), 0, 6.28") && lines.iter().all(|l| l.chars().count() <= 72));
+    assert!(run.out().contains("-1.0") && run.out().contains("0.5"), "{}", run.out());
+    let path = "spline path { bezier <0, 0>, <0, 1>, <1, 1>, <1, 0> }\n";
+    for asked in ["path", "path comb polygon blossom 0.5", "path, 0.2, 0.8", "t => path(t), 0, 1"] {
+        let run = repl(&format!("{path}:plot {asked}\n")).expect(0);
+        assert!(run.out().chars().any(|c| ('\u{2801}'..='\u{28ff}').contains(&c)), "{asked}");
+    }
+    let run = repl("spline s { natural <0, 0, 0>, <1, 2, 1>, <3, 1, 5> }\n:plot s\n").expect(0);
+    assert!(run.out().contains("z, seen along -x") || run.out().contains("seen along -"), "{}", run.out());
+}
+
+#[test]
+fn plots_go_to_files_as_svg_and_png() {
+    let folder = Folder::new();
+    let lines = "spline path { bezier <0, 0>, <0, 1>, <1, 1>, <1, 0> }\n\
+                 :plot path comb polygon blossom 0.25 --to a.svg\n\
+                 :plot x => 1 / x, -2, 2 --to \"b c.png\"\n\
+                 material clay { diffuse <0.8, 0.3, 0.2>  specular 0.3  exponent 30 }\n\
+                 :plot brdf clay --to c.svg\n";
+    assert_eq!(folder.ogee_fed("repl", lines).expect(0).out(), "");
+    assert_eq!(folder.names(), ["a.svg", "b c.png", "c.svg"]);
+    insta::assert_snapshot!("plot_of_a_curve", String::from_utf8(folder.read("a.svg")).unwrap());
+    let picture = image::load_from_memory(&folder.read("b c.png")).unwrap().to_rgb8();
+    assert_eq!(picture.dimensions(), (720, 480));
+    assert!(picture.pixels().any(|p| p.0 == [0x44, 0x77, 0xaa]));
+    assert!(String::from_utf8(folder.read("c.svg")).unwrap().contains("brdf clay"));
+}
+
+#[test]
+fn what_cannot_be_plotted_is_told_at_its_place_and_changes_nothing() {
+    for (asked, told) in [
+        ("3", "a function or a curve can be plotted"),
+        ("x => sin(x), 0", "a range is two numbers"),
+        ("x => sin(x), 1, 0", "from a smaller to a larger"),
+        ("x => sin(x) comb", "want a curve"),
+        ("x => sqrt(-1 - x^2)", "<repl>:2:17"),
+        ("x => nope", "`nope` is not defined"),
+        ("brdf 3", "`brdf` wants a material"),
+        ("sin --to a.gif", "figures are .svg or .png"),
+        ("sin --to none/a.svg", "there is no folder none"),
+        ("sin blossom x", "`blossom` wants a number"),
+    ] {
+        let run = repl(&format!("var n = 1\n:plot {asked}\nn\n")).expect(1);
+        assert!(run.stderr.contains(told), "{asked}: {}", run.stderr);
+        assert_eq!(run.out(), "1\n", "{asked}");
+    }
+}

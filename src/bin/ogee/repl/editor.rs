@@ -1,14 +1,18 @@
 //! Lines from a terminal: editing, history, and completion with Tab.
 
+use super::orders::{ORDERS, Order};
 use super::{Lines, Next, Talk, goes_on};
 use crate::speech::{Failure, tell};
-use rustyline::completion::Completer;
+use ogee::lang::complete::{Visible, complete};
+use ogee::syntax::unfinished::End;
+use rustyline::completion::{Completer, FilenameCompleter, Pair};
 use rustyline::error::ReadlineError;
 use rustyline::highlight::Highlighter;
 use rustyline::hint::Hinter;
 use rustyline::history::DefaultHistory;
 use rustyline::validate::{ValidationContext, ValidationResult, Validator};
-use rustyline::{CompletionType, Config, Helper};
+use rustyline::{CompletionType, Config, Context, Helper};
+use std::collections::BTreeSet;
 use std::path::PathBuf;
 
 /// So many lines of history are kept.
@@ -56,6 +60,9 @@ impl Editor {
 
 impl Lines for Editor {
     fn next(&mut self, talk: &Talk<'_, '_>) -> Result<Next, Failure> {
+        if let Some(assistant) = self.editor.helper_mut() {
+            assistant.visible = talk.dialogue.visible();
+        }
         let prompt = format!("{}> ", talk.n_lines + 1);
         match self.editor.readline(&prompt) {
             Ok(text) => {
@@ -82,7 +89,10 @@ fn data_folder() -> Option<PathBuf> {
 
 /// What the editor asks while a line is typed.
 #[derive(Default)]
-struct Assistant {}
+struct Assistant {
+    visible: Visible,
+    files: FilenameCompleter,
+}
 
 impl Helper for Assistant {}
 
@@ -94,7 +104,42 @@ impl Validator for Assistant {
 }
 
 impl Completer for Assistant {
-    type Candidate = String;
+    type Candidate = Pair;
+
+    fn complete(
+        &self,
+        line: &str,
+        at: usize,
+        context: &Context<'_>,
+    ) -> rustyline::Result<(usize, Vec<Pair>)> {
+        let before = &line[..at];
+        let order = before.strip_prefix(':').map(|order| order.split_once(' '));
+        let (start, words) = match order {
+            Some(None) => (1, starting(&before[1..], ORDERS.iter().map(with_blank))),
+            Some(Some(("load", _))) => return self.files.complete(line, at, context),
+            Some(Some(("help", name))) => (at - name.len(), starting(name, ogee::lang::reference::names())),
+            Some(Some(_)) | None if End::of(before).in_text() => {
+                return self.files.complete(line, at, context);
+            }
+            Some(Some(_)) | None => {
+                let found = complete(before, &self.visible);
+                (found.start, found.words)
+            }
+        };
+        let pair = |word: String| Pair { display: word.clone(), replacement: word };
+        Ok((start, words.into_iter().map(pair).collect()))
+    }
+}
+
+/// The words that begin as typed, in alphabetical order.
+fn starting(typed: &str, words: impl Iterator<Item = impl Into<String>>) -> Vec<String> {
+    let words: BTreeSet<String> = words.map(Into::into).filter(|word| word.starts_with(typed)).collect();
+    words.into_iter().collect()
+}
+
+/// An order's word, with a blank where more follows.
+fn with_blank(order: &Order) -> String {
+    order.name.to_owned() + if order.argument.is_empty() { "" } else { " " }
 }
 
 impl Hinter for Assistant {

@@ -4,6 +4,7 @@
 mod editor;
 mod orders;
 mod pipe;
+mod plot;
 
 use crate::args::Repl;
 use crate::interrupt::{self, CANCEL};
@@ -92,8 +93,8 @@ impl Talk<'_, '_> {
 
     fn line(&mut self, text: &str, first_line: usize) -> Result<Flow, Failure> {
         let trimmed = text.trim();
-        if let Some(order) = trimmed.strip_prefix(':') {
-            return orders::obey(self, order, first_line);
+        if trimmed.starts_with(':') {
+            return orders::obey(self, text, first_line);
         }
         match orders::meant(trimmed) {
             Some(order) if !self.dialogue.names().contains(&trimmed) => {

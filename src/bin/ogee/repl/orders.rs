@@ -13,7 +13,26 @@ pub struct Order {
     pub argument: &'static str,
     /// What it does, in a line.
     doc: &'static str,
-    obey: fn(&mut Talk<'_, '_>, &str, usize) -> Result<Flow, Failure>,
+    obey: fn(&mut Talk<'_, '_>, &Given<'_>) -> Result<Flow, Failure>,
+}
+
+/// What stands behind an order.
+struct Given<'g> {
+    /// The whole line.
+    line: &'g str,
+    /// Where in it the argument begins.
+    at: usize,
+    /// The argument, without blanks around it.
+    argument: &'g str,
+    /// Lines before this one.
+    first_line: usize,
+}
+
+impl Given<'_> {
+    /// The argument with blanks before it, so that its columns are those of the line.
+    fn in_place(&self) -> String {
+        " ".repeat(self.line[..self.at].chars().count()) + self.argument
+    }
 }
 
 /// All of them.
@@ -26,7 +45,13 @@ pub const ORDERS: &[Order] = &[
     },
     Order { name: "load", argument: "FILE", doc: "evaluate a file as if its items stood here", obey: load },
     Order { name: "names", argument: "", doc: "the names in scope", obey: names },
-    Order { name: "quit", argument: "", doc: "leave, as Ctrl-D does", obey: |_, _, _| Ok(Flow::Quit) },
+    Order {
+        name: "plot",
+        argument: "EXPR[, FROM, TO] [comb] [polygon] [blossom T] [--to FILE]",
+        doc: "draw a function or curve",
+        obey: plot,
+    },
+    Order { name: "quit", argument: "", doc: "leave, as Ctrl-D does", obey: |_, _| Ok(Flow::Quit) },
     Order {
         name: "reload",
         argument: "",
@@ -43,10 +68,13 @@ pub const ORDERS: &[Order] = &[
     Order { name: "type", argument: "EXPR", doc: "the sort of a value; changes nothing", obey: sort },
 ];
 
-/// Does what an order says; `line` is it without its colon.
+/// Does what an order says.
 pub fn obey(talk: &mut Talk<'_, '_>, line: &str, first_line: usize) -> Result<Flow, Failure> {
-    let (word, argument) = line.split_once(char::is_whitespace).unwrap_or((line, ""));
-    let argument = argument.trim();
+    let order = line.trim_start().strip_prefix(':').unwrap_or(line);
+    let (word, rest) = order.split_once(char::is_whitespace).unwrap_or((order.trim_end(), ""));
+    let argument = rest.trim();
+    let at = line.len() - rest.trim_start().len();
+    let given = Given { line, at, argument, first_line };
     match ORDERS.iter().find(|order| order.name == word) {
         Some(order) if order.argument.is_empty() && !argument.is_empty() => {
             Ok(refuse(talk, &format!("`:{word}` stands alone")))
@@ -54,7 +82,7 @@ pub fn obey(talk: &mut Talk<'_, '_>, line: &str, first_line: usize) -> Result<Fl
         Some(order) if needs_argument(order) && argument.is_empty() => {
             Ok(refuse(talk, &format!("write `:{word} {}`", order.argument)))
         }
-        Some(order) => (order.obey)(talk, argument, first_line),
+        Some(order) => (order.obey)(talk, &given),
         None => {
             let near = ogee::diag::nearest(word, ORDERS.iter().map(|order| order.name));
             let hint =
@@ -68,7 +96,7 @@ fn needs_argument(order: &Order) -> bool {
     !order.argument.is_empty() && !order.argument.starts_with('[')
 }
 
-fn refuse(talk: &mut Talk<'_, '_>, message: &str) -> Flow {
+pub(super) fn refuse(talk: &mut Talk<'_, '_>, message: &str) -> Flow {
     tell_failure(&Failure::usage(message));
     talk.failed = true;
     Flow::On
@@ -83,7 +111,8 @@ pub fn meant(line: &str) -> Option<&'static str> {
     }
 }
 
-fn help(talk: &mut Talk<'_, '_>, name: &str, _: usize) -> Result<Flow, Failure> {
+fn help(talk: &mut Talk<'_, '_>, given: &Given<'_>) -> Result<Flow, Failure> {
+    let name = given.argument;
     if name.is_empty() {
         data(listed())?;
         return Ok(Flow::On);
@@ -107,8 +136,8 @@ fn listed() -> String {
     text
 }
 
-fn load(talk: &mut Talk<'_, '_>, file: &str, _: usize) -> Result<Flow, Failure> {
-    let path = file.strip_prefix('"').and_then(|file| file.strip_suffix('"')).unwrap_or(file);
+fn load(talk: &mut Talk<'_, '_>, given: &Given<'_>) -> Result<Flow, Failure> {
+    let path = unquoted(given.argument);
     if let Err(failure) = crate::commands::try_to_read(Path::new(path)) {
         return Ok(refuse(talk, &failure.message));
     }
@@ -116,26 +145,26 @@ fn load(talk: &mut Talk<'_, '_>, file: &str, _: usize) -> Result<Flow, Failure> 
     Ok(Flow::On)
 }
 
-fn reload(talk: &mut Talk<'_, '_>, _: &str, _: usize) -> Result<Flow, Failure> {
+fn reload(talk: &mut Talk<'_, '_>, _: &Given<'_>) -> Result<Flow, Failure> {
     talk.answer(|dialogue| dialogue.reload())?;
     Ok(Flow::On)
 }
 
-fn names(talk: &mut Talk<'_, '_>, _: &str, _: usize) -> Result<Flow, Failure> {
+fn names(talk: &mut Talk<'_, '_>, _: &Given<'_>) -> Result<Flow, Failure> {
     data(talk.dialogue.names().iter().map(|name| format!("{name}\n")).collect::<String>())?;
     Ok(Flow::On)
 }
 
-fn scene(talk: &mut Talk<'_, '_>, _: &str, _: usize) -> Result<Flow, Failure> {
+fn scene(talk: &mut Talk<'_, '_>, _: &Given<'_>) -> Result<Flow, Failure> {
     data(ogee::session::inspect::text(talk.dialogue.scene(), talk.dialogue.sources()))?;
     Ok(Flow::On)
 }
 
-fn time(talk: &mut Talk<'_, '_>, text: &str, first_line: usize) -> Result<Flow, Failure> {
+fn time(talk: &mut Talk<'_, '_>, given: &Given<'_>) -> Result<Flow, Failure> {
     let start = Instant::now();
     let mut seconds = 0.0;
     talk.answer(|dialogue| {
-        let reply = dialogue.line(text, first_line);
+        let reply = dialogue.line(&given.in_place(), given.first_line);
         seconds = start.elapsed().as_secs_f64();
         reply
     })?;
@@ -143,10 +172,10 @@ fn time(talk: &mut Talk<'_, '_>, text: &str, first_line: usize) -> Result<Flow, 
     Ok(Flow::On)
 }
 
-fn sort(talk: &mut Talk<'_, '_>, text: &str, first_line: usize) -> Result<Flow, Failure> {
+fn sort(talk: &mut Talk<'_, '_>, given: &Given<'_>) -> Result<Flow, Failure> {
     let mut sort = None;
     talk.answer(|dialogue| {
-        let (found, reply) = dialogue.sort_of(text, first_line);
+        let (found, reply) = dialogue.sort_of(&given.in_place(), given.first_line);
         sort = found;
         reply
     })?;
@@ -154,4 +183,13 @@ fn sort(talk: &mut Talk<'_, '_>, text: &str, first_line: usize) -> Result<Flow, 
         data(format!("{sort}\n"))?;
     }
     Ok(Flow::On)
+}
+
+fn plot(talk: &mut Talk<'_, '_>, given: &Given<'_>) -> Result<Flow, Failure> {
+    super::plot::plot(talk, given.line, given.at, given.first_line)
+}
+
+/// A file's name, which may stand in quotes.
+pub(super) fn unquoted(name: &str) -> &str {
+    name.strip_prefix('"').and_then(|name| name.strip_suffix('"')).unwrap_or(name)
 }
