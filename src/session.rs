@@ -7,6 +7,7 @@ pub mod inspect;
 pub mod picture;
 pub mod plot;
 mod run;
+mod trace;
 pub mod whole;
 
 use crate::diag::{Code, Diagnostic, SourceMap};

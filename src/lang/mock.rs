@@ -1,10 +1,11 @@
 //! A context for tests of the tables: it keeps what is reported and printed, and every file is there.
 
-use super::table::{Arguments, Block, Builtin, Context, Kind, Outcome, Reported};
+use super::table::{Arguments, Block, Builtin, Context, Kind, Outcome, Reported, Trace, Traced};
 use super::value::{Given, Value};
 use crate::diag::{Diagnostic, SourceId, Span};
 use crate::scene::assets::Loader;
-use crate::scene::{SampleInput, SampledFunction};
+use crate::scene::{Object, SampleInput, SampledFunction};
+use glam::DVec3;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -29,7 +30,17 @@ impl Loader for EveryFile {
     }
 }
 
+impl Trace for Mock {
+    fn trace(&self, _: &Arc<Object>, _: DVec3, _: DVec3, _: Span) -> Result<Vec<Traced>, Vec<Diagnostic>> {
+        Ok(Vec::new())
+    }
+}
+
 impl Context for Mock {
+    fn tracer(&self) -> &dyn Trace {
+        self
+    }
+
     fn report(&mut self, diagnostic: Diagnostic) {
         self.said.push(diagnostic);
     }

@@ -5,8 +5,9 @@ use super::value::{Given, Value};
 use crate::diag::{Diagnostic, Span};
 use crate::math::field::CallN;
 use crate::scene::assets::Loader;
-use crate::scene::{Node, SampleInput, SampledFunction};
+use crate::scene::{Node, Object, SampleInput, SampledFunction};
 use crate::syntax::ast::Name;
+use glam::{DVec2, DVec3};
 use std::path::PathBuf;
 use std::rc::Rc;
 use std::sync::Arc;
@@ -17,6 +18,31 @@ pub struct Reported;
 
 /// A value, or an error that was already reported.
 pub type Outcome<T = Value> = Result<T, Reported>;
+
+/// Who finds where rays meet objects. The language only asks; who holds the world answers.
+pub trait Trace {
+    /// Every hit of a ray with an object's true surface, nearest first; or what is wrong with the object, or with a function that makes it.
+    fn trace(
+        &self,
+        object: &Arc<Object>,
+        origin: DVec3,
+        direction: DVec3,
+        at: Span,
+    ) -> Result<Vec<Traced>, Vec<Diagnostic>>;
+}
+
+/// Where a ray met an object.
+#[derive(Clone, Copy, Debug)]
+pub struct Traced {
+    /// How many lengths of the direction it is away.
+    pub t: f64,
+    /// On the surface.
+    pub point: DVec3,
+    /// Unit shading normal, outward.
+    pub normal: DVec3,
+    /// Surface parameters.
+    pub uv: DVec2,
+}
 
 /// What builders and builtins may ask of the evaluator.
 pub trait Context {
@@ -50,6 +76,8 @@ pub trait Context {
     fn reserve(&mut self, elements: usize, at: Span) -> Outcome<()>;
     /// Says by how much the number that is about to be given may be off, where that is more than rounding.
     fn estimated(&mut self, error: f64);
+    /// Who finds where rays meet objects.
+    fn tracer(&self) -> &dyn Trace;
     /// `time` and `frame` of this evaluation.
     fn time(&self) -> (f64, f64);
 }

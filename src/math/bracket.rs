@@ -36,6 +36,45 @@ pub fn newton(lo: f64, hi: f64, start: f64, rising: bool, mut f: impl FnMut(f64)
     x
 }
 
+/// The root of a continuous `f` between two places with its values there, which differ in sign (or one is 0), to within `tolerance`: of the last
+/// bracket the end whose value is nearer to 0. Inverse quadratic steps where they promise more than halving (Chandrupatla, *A new hybrid
+/// quadratic/bisection algorithm*, 1997); a NaN ends the search. Usually 5 to 8 evaluations.
+pub fn closest(a: (f64, f64), b: (f64, f64), tolerance: f64, mut f: impl FnMut(f64) -> f64) -> f64 {
+    // `one` is the newest, on the other side of 0 from `two`; `three` is what was dropped last.
+    let (mut one, mut two) = (b, a);
+    let mut share = 0.5;
+    for _ in 0..MAX_STEPS {
+        let best = if one.1.abs() < two.1.abs() { one } else { two };
+        let width = (two.0 - one.0).abs();
+        let least = 0.5 * (tolerance + f64::EPSILON * best.0.abs()) / width;
+        if best.1 == 0.0 || !(least < 0.5) {
+            return best.0;
+        }
+        let x = one.0 + f64::clamp(share, least, 1.0 - least) * (two.0 - one.0);
+        let value = f(x);
+        if value.is_nan() {
+            return best.0;
+        }
+        let three = if (value < 0.0) == (one.1 < 0.0) { one } else { std::mem::replace(&mut two, one) };
+        one = (x, value);
+        share = chandrupatla(one, two, three);
+    }
+    one.0
+}
+
+/// Where between `one` and `two` to look next, as a share of the way.
+fn chandrupatla(one: (f64, f64), two: (f64, f64), three: (f64, f64)) -> f64 {
+    let xi = (one.0 - two.0) / (three.0 - two.0);
+    let phi = (one.1 - two.1) / (three.1 - two.1);
+    let fits = phi * phi < xi && (1.0 - phi) * (1.0 - phi) < 1.0 - xi;
+    if !fits {
+        return 0.5;
+    }
+    let direct = one.1 / (two.1 - one.1) * three.1 / (two.1 - three.1);
+    let bent = (three.0 - one.0) / (two.0 - one.0) * one.1 / (three.1 - one.1) * two.1 / (three.1 - two.1);
+    direct + bent
+}
+
 /// 53 bits of a bracket of ordinary size, twice over for the steps of Newton between halvings.
 const MAX_STEPS: usize = 128;
 
@@ -84,6 +123,26 @@ mod tests {
         let root = newton(0.0, 2.0, 1.9, true, |x| (x * x - 2.0, 2.0 * x));
         assert!((root - 2f64.sqrt()).abs() <= f64::EPSILON);
         assert_eq!(newton(0.0, 1.0, 0.5, false, |x| (0.25 - x, -1.0)), 0.25);
+    }
+
+    #[test]
+    fn the_nearest_end_is_found_in_few_steps() {
+        let mut n = 0;
+        let mut counted = |lo: f64, hi: f64, f: &dyn Fn(f64) -> f64| {
+            n = 0;
+            let root = closest((lo, f(lo)), (hi, f(hi)), 0.0, |x| {
+                n += 1;
+                f(x)
+            });
+            (root, n)
+        };
+        let (root, n) = counted(0.0, 2.0, &|x| x * x - 2.0);
+        assert!((root - 2f64.sqrt()).abs() <= f64::EPSILON && n <= 9, "{root} after {n}");
+        let (root, n) = counted(-1.0, 1.0, &|x| crate::math::elementary::cbrt(x - 0.1));
+        assert!((root - 0.1).abs() < 1e-15 && n <= 60, "{root} after {n}");
+        let (root, _) = counted(0.0, 1.0, &|x| if x < 0.3 { -1.0 } else { 1.0 });
+        assert!((root - 0.3).abs() <= f64::EPSILON, "{root}");
+        assert_eq!(counted(0.0, 1.0, &|x| x - 0.25).0, 0.25);
     }
 
     #[test]

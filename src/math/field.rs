@@ -6,9 +6,13 @@
 //! has no finite value: the [`Fault`] names the operation's *site*, a number that the maker of the tape gave it.
 
 mod builder;
+mod enclose;
+mod rules;
 mod run;
+mod simplify;
 
 pub use builder::{FieldBuilder, Label, TableId, TooLarge};
+pub use enclose::{Choice, Enclosed, Encloser};
 pub use run::SMALL;
 
 use std::sync::Arc;
@@ -38,6 +42,55 @@ pub type CallN = fn(&[f64], &mut [f64]);
 
 /// Most inputs, and most outputs, that a [`CallN`] may have.
 pub const MAX_CALL: usize = 16;
+
+/// What is known of a function that a tape calls, so that it can be bounded over intervals too. The evaluation of points does not read it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[allow(missing_docs, reason = "each is named for its function")]
+pub enum Rule {
+    /// Nothing: any value, any jump.
+    Opaque,
+    Sin,
+    Cos,
+    Tan,
+    Asin,
+    Acos,
+    Atan,
+    Sinh,
+    Cosh,
+    Tanh,
+    Exp,
+    Ln,
+    Log10,
+    Log2,
+    Cbrt,
+    Sign,
+    /// To the nearest whole number.
+    Round,
+    /// Degrees to radians.
+    Radians,
+    /// Radians to degrees.
+    Degrees,
+    /// aᵇ; by repeated products for small whole b.
+    Power,
+    /// Of y and x.
+    Atan2,
+    /// a − b·⌊a / b⌋.
+    FlooredMod,
+    /// a(1 − t) + bt.
+    Mix,
+    /// Of x, low, high.
+    Clamp,
+    /// Of two edges and x.
+    Smoothstep,
+    Cross,
+    Length,
+    Normalize,
+    Distance,
+    /// [`crate::math::noise::noise`].
+    Noise,
+    /// (1 + [`crate::math::noise::fbm`]) / 2, of a point, octaves, lacunarity and gain.
+    Fbm,
+}
 
 /// Operations on one number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -97,13 +150,15 @@ pub enum Op {
     /// to ← condition ≠ 0 ? a : b, as (to, condition, a, b). Both were computed already: no guard against faults.
     Select(Register, Register, Register, Register),
     /// to ← f(a).
-    Call1(Call1, Register, Register),
+    Call1(Call1, Rule, Register, Register),
     /// to ← f(a, b).
-    Call2(Call2, Register, Register, Register),
+    Call2(Call2, Rule, Register, Register, Register),
     /// The `n_to` registers from `to` ← f(the `n_from` registers from `from`).
     CallN {
         /// What is called.
         f: CallN,
+        /// What is known of it.
+        rule: Rule,
         /// First of the arguments.
         from: Register,
         /// How many arguments.
@@ -164,6 +219,8 @@ pub enum FaultKind {
     IndexOutOfRange,
     /// Loops that take more turns than the tape's limit.
     TooManyTurns,
+    /// Zeros that could not be told apart; no tape makes it, but who looks for them does.
+    Unresolved,
 }
 
 impl FaultKind {
@@ -175,6 +232,7 @@ impl FaultKind {
             FaultKind::NotFinite => "a result that is not finite",
             FaultKind::IndexOutOfRange => "an index outside its list",
             FaultKind::TooManyTurns => "a loop that runs too long",
+            FaultKind::Unresolved => "a surface that is too tangled to follow",
         }
     }
 }

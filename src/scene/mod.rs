@@ -16,7 +16,9 @@ pub use material::{
     Filter, Fresnel, ImagePattern, Layers, Lobe, Material, Pattern, PatternKind, SampleInput,
     SampledFunction, Texture, Wrap,
 };
-pub use object::{Cone, Csg, CsgOp, Disc, Hide, MeshSource, Node, Object, Rect, Shape, Torus, Triangle};
+pub use object::{
+    Cone, Csg, CsgOp, Disc, Hide, Implicit, MeshSource, Node, Object, Rect, Shape, Torus, Triangle,
+};
 pub use settings::{Accelerator, RenderSettings, ToneMap, TracerKind};
 pub use solid::{open_mesh, solid_fault};
 pub use surface::{

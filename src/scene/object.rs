@@ -1,6 +1,6 @@
 //! Objects: a shape, where it stands, what it is made of, and where in the text it was written.
 
-use super::{Light, Material, Surface};
+use super::{Light, Material, SampledFunction, Surface};
 use crate::diag::Span;
 use crate::geometry::mesh::Mesh;
 use crate::math::Affine;
@@ -95,6 +95,19 @@ pub enum Shape {
     Group(Arc<[Node]>),
     /// Solids put together, shared between placements.
     Csg(Arc<Csg>),
+    /// Where a function is 0, shared between placements.
+    Implicit(Arc<Implicit>),
+}
+
+/// An implicit surface: where a function of the point is 0 within a box, solid where it is negative.
+#[derive(Clone, Debug)]
+pub struct Implicit {
+    /// Of the point, to one number.
+    pub function: Arc<SampledFunction>,
+    /// The least and the greatest corner of the box, in this order in each coordinate.
+    pub within: (DVec3, DVec3),
+    /// A promise that the gradient's length does not exceed this, and where it was given.
+    pub gradient: Option<(f64, Span)>,
 }
 
 impl Shape {
@@ -106,7 +119,8 @@ impl Shape {
             Shape::Sphere { .. } | Shape::Plane { .. } | Shape::Disc(_) | Shape::Rect(_) | Shape::Box(_) => {
                 &[]
             }
-            Shape::Cone(_) | Shape::Torus(_) | Shape::Triangle(_) | Shape::Mesh(_) | Shape::Surface(_) => &[],
+            Shape::Cone(_) | Shape::Torus(_) | Shape::Triangle(_) => &[],
+            Shape::Mesh(_) | Shape::Surface(_) | Shape::Implicit(_) => &[],
         }
     }
 }

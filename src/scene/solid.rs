@@ -15,7 +15,7 @@ pub fn solid_fault(node: &Node) -> Option<Diagnostic> {
     };
     match &object.shape {
         Shape::Sphere { .. } | Shape::Plane { .. } | Shape::Box(_) | Shape::Cone(_) | Shape::Torus(_) => None,
-        Shape::Group(_) | Shape::Csg(_) => None,
+        Shape::Group(_) | Shape::Csg(_) | Shape::Implicit(_) => None,
         Shape::Mesh(mesh) => match &**mesh {
             MeshSource::Inline(mesh) if !mesh.is_closed() => Some(open_mesh(object.span)),
             MeshSource::Inline(_) | MeshSource::File { .. } => None,

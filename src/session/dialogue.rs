@@ -5,6 +5,7 @@
 
 use super::answer::Answer;
 use super::run::{self, Means, Root, State, on_deep_stack};
+use super::trace::Tracer;
 use super::{Options, Session};
 use crate::diag::{Code, Diagnostic, Sink, SourceId, SourceMap, Span};
 use crate::lang;
@@ -267,7 +268,8 @@ impl Dialogue<'_> {
         let marks = (state.known.mark(), state.files.mark());
         state.standing.begin();
         let Dialogue { options, loader, cancel, stack, .. } = *self;
-        let mut means = Means { sources: self.sources, options, loader, cancel, stack };
+        let tracer = Tracer::new(loader);
+        let mut means = Means { sources: self.sources, options, loader, tracer, cancel, stack };
         let done = evaluate(state, &mut means, &mut sink);
         let interrupted = cancel.is_some_and(|asked| asked.load(Ordering::SeqCst));
         let failed = sink.has_errors() || interrupted || done.is_none();

@@ -209,6 +209,7 @@ fn shape_word(shape: &Shape) -> &'static str {
         Shape::Surface(surface) => surface.word(),
         Shape::Group(_) => "group",
         Shape::Csg(csg) => csg.op.word(),
+        Shape::Implicit(_) => "implicit",
     }
 }
 
@@ -242,6 +243,12 @@ fn shape_properties(shape: &Shape) -> Vec<(&'static str, Json)> {
         Shape::Mesh(mesh) => mesh_properties(mesh),
         Shape::Surface(surface) => surface_properties(surface),
         Shape::Group(_) => vec![],
+        Shape::Implicit(implicit) => {
+            let (min, max) = implicit.within;
+            let mut properties = vec![("within", json!([vector(min), vector(max)]))];
+            properties.extend(implicit.gradient.map(|(bound, _)| ("gradient", json!(bound))));
+            properties
+        }
         Shape::Csg(csg) => csg.inverse.then(|| ("inverse", json!(true))).into_iter().collect(),
     }
 }

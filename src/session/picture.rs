@@ -3,6 +3,7 @@
 
 use super::whole;
 use crate::diag::{Code, Diagnostic};
+use crate::math::field::FaultKind;
 use crate::render::camera::View;
 use crate::render::film::{Fault, Film};
 use crate::render::settings::{Crop, ResolvedSettings};
@@ -137,6 +138,11 @@ fn undefined(fault: &Fault) -> Diagnostic {
     let what = fault.kind.map_or("a function without a value", |kind| kind.text());
     let message = format!("{what} at {pixels}; the first is ({x}, {y})");
     Diagnostic::new(Code::UndefinedSample, fault.span, message).label("no finite value there").hint(
-        "these pixels are magenta; keep a divisor from 0, clamp a root's argument, or choose with `? :`",
+        match fault.kind {
+            Some(FaultKind::Unresolved) => {
+                "these pixels are magenta; smooth the function, or make the box smaller: a jump or a pole may fill the ray"
+            }
+            _ => "these pixels are magenta; keep a divisor from 0, clamp a root's argument, or choose with `? :`",
+        },
     )
 }

@@ -1,5 +1,6 @@
 //! Evaluation from text to scene: reading, resolving and running, on a stack that is deep enough for recursion.
 
+use super::trace::Tracer;
 use super::{Evaluated, Options};
 use crate::diag::{Code, Diagnostic, Sink, SourceMap};
 use crate::lang::eval::{self, Attempts, Ran, Run, Said, Standing};
@@ -44,6 +45,7 @@ pub(super) struct Means<'m> {
     pub sources: &'m mut SourceMap,
     pub options: &'m Options,
     pub loader: &'m dyn Loader,
+    pub tracer: Tracer<'m>,
     pub cancel: Option<&'m AtomicBool>,
     pub stack: usize,
 }
@@ -60,7 +62,7 @@ pub(super) fn evaluate(
 ) -> Outcome {
     on_deep_stack(&options.limits, |stack| {
         let mut sink = Sink::default();
-        let mut means = Means { sources, options, loader, cancel: None, stack };
+        let mut means = Means { sources, options, loader, tracer: Tracer::new(loader), cancel: None, stack };
         let mut state = State::default();
         let Some(file) = state.read(&mut means, root, &mut sink) else { return empty(sink) };
         let set = settings(&mut means, &mut sink);
@@ -136,6 +138,7 @@ impl Means<'_> {
             program: &known.program,
             files,
             loader: self.loader,
+            tracer: &self.tracer,
             limits: self.options.limits,
             time: (self.options.time, f64::from(self.options.frame)),
             stack: self.stack,

@@ -85,7 +85,8 @@ impl Survey {
             Shape::Sphere { .. } | Shape::Plane { .. } | Shape::Disc(_) | Shape::Rect(_) | Shape::Box(_) => {
                 self.objects = true;
             }
-            Shape::Cone(_) | Shape::Torus(_) | Shape::Triangle(_) | Shape::Surface(_) => self.objects = true,
+            Shape::Cone(_) | Shape::Torus(_) | Shape::Triangle(_) => self.objects = true,
+            Shape::Surface(_) | Shape::Implicit(_) => self.objects = true,
             Shape::Csg(csg) => {
                 self.objects = true;
                 if self.seen.insert(Arc::as_ptr(&csg.children)) {

@@ -4,6 +4,7 @@
 //! clear of the surface whatever the rounding was, and no farther: no absolute distance appears. Pharr, Jakob & Humphreys,
 //! *Physically Based Rendering* (4th ed.) §6.8.
 
+use super::texture::TextureFault;
 use super::{PrimitiveId, Ray, RayKind};
 use crate::math::error::gamma;
 use crate::scene::Material;
@@ -30,6 +31,8 @@ pub struct Hit<'w> {
     pub local_point: DVec3,
     /// The material.
     pub material: &'w Material,
+    /// Why the surface is not known here: a function that makes it has no value. The pixel says so.
+    pub fault: Option<TextureFault>,
     /// Which primitive of the world, for provenance and for emitters.
     pub primitive: PrimitiveId,
 }

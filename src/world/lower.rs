@@ -36,6 +36,33 @@ pub(super) fn lower(
     options: &WorldOptions,
     assets: &AssetCache<'_>,
 ) -> (World, Vec<Diagnostic>) {
+    let (aggregates, materials, mut sink) = lowered(nodes, options, assets);
+    sink.extend(super::texture::load_pictures(materials.iter().map(|m| &**m), assets));
+    let (lights, emitters) = lights::gather(&aggregates, &materials, &mut sink);
+    (settled(World { lights, emitters, aggregates, materials }), sink.into_sorted())
+}
+
+/// See [`World::of_shapes`].
+pub(super) fn lower_shapes(nodes: Vec<Node>, assets: &AssetCache<'_>) -> (World, Vec<Diagnostic>) {
+    let (aggregates, materials, sink) = lowered(nodes, &WorldOptions::default(), assets);
+    let (lights, emitters) = (Vec::new(), Vec::new());
+    (settled(World { lights, emitters, aggregates, materials }), sink.into_sorted())
+}
+
+fn settled(mut world: World) -> World {
+    for aggregate in &mut world.aggregates {
+        if let Aggregate::Group(group) = aggregate {
+            group.settle();
+        }
+    }
+    world
+}
+
+fn lowered(
+    nodes: Vec<Node>,
+    options: &WorldOptions,
+    assets: &AssetCache<'_>,
+) -> (Vec<Aggregate>, Vec<Arc<Material>>, Sink) {
     let mut lowering = Lowering {
         survey: Survey::of(&nodes),
         with_trees: options.accelerator != Accelerator::None,
@@ -51,16 +78,8 @@ pub(super) fn lower(
     };
     let world_group = lowering.group(Source::Owned(nodes.into_iter()), 0);
     lowering.aggregates[0] = Aggregate::Group(world_group);
-    let Lowering { mut aggregates, materials, mut sink, .. } = lowering;
-    let materials = materials.all;
-    sink.extend(super::texture::load_pictures(materials.iter().map(|m| &**m), assets));
-    let (lights, emitters) = lights::gather(&aggregates, &materials, &mut sink);
-    for aggregate in &mut aggregates {
-        if let Aggregate::Group(group) = aggregate {
-            group.settle();
-        }
-    }
-    (World { lights, emitters, aggregates, materials }, sink.into_sorted())
+    let Lowering { aggregates, materials, sink, .. } = lowering;
+    (aggregates, materials.all, sink)
 }
 
 /// What is known while a scene is taken apart.
@@ -236,9 +255,8 @@ impl Lowering<'_> {
                 None
             }
             simple => {
-                match shapes::convert(simple) {
-                    Ok(shape) => group.add(Item::Shape(shape, transform), facts),
-                    Err(fault) => self.sink.push(Diagnostic::new(Code::BadGeometry, span, fault)),
+                if let Some(shape) = self.simple(simple, span) {
+                    group.add(Item::Shape(shape, transform), facts);
                 }
                 None
             }

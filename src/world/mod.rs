@@ -8,6 +8,7 @@ mod aggregate;
 pub mod bsdf;
 pub mod bvh;
 mod emitter;
+mod every;
 mod footprint;
 mod hit;
 pub mod light;
@@ -130,6 +131,11 @@ impl World {
         assets: &AssetCache<'_>,
     ) -> (World, Vec<Diagnostic>) {
         lower::lower(nodes, options, assets)
+    }
+
+    /// A world of which nothing but shapes will be asked: pictures and lights are left out.
+    pub fn of_shapes(nodes: Vec<Node>, assets: &AssetCache<'_>) -> (World, Vec<Diagnostic>) {
+        lower::lower_shapes(nodes, assets)
     }
 
     /// The first thing a ray meets, before `t_max`, that is not hidden from it.

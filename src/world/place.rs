@@ -113,6 +113,7 @@ impl World {
             uv: surface.uv,
             local_point,
             material,
+            fault: shape.and_then(|shape| shape.fault(&local, &candidate.meet)),
             primitive: candidate.id,
         })
     }

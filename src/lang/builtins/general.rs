@@ -5,10 +5,11 @@ use crate::diag::{Code, Diagnostic};
 use crate::geometry::any_curve::IntoCurve;
 use crate::geometry::function::FunctionPath;
 use crate::lang::coerce::{number, shown};
-use crate::lang::table::{Arguments, Builtin, BuiltinBody::*, Context, Outcome, Parameter, Reported};
-use crate::lang::value::Value;
+use crate::lang::table::{Arguments, Builtin, BuiltinBody::*, Context, Outcome, Parameter, Reported, Traced};
+use crate::lang::value::{Record, Value};
 use crate::math::{Point, solve};
 use glam::{DVec2, DVec3};
+use std::rc::Rc;
 
 /// The family.
 pub static ALL: &[Builtin] = &[
@@ -19,9 +20,11 @@ pub static ALL: &[Builtin] = &[
             Parameter::new("origin", "a 3-vector"),
             Parameter::new("direction", "a 3-vector"),
         ],
-        NotBuilt,
-        "The hits of a ray with an object in order, each with `.t .point .normal .uv`.",
-        ("trace(ball, <0, 0, 5>, -z)", ""),
+        General(trace),
+        "The hits of a ray with an object's true surface in order, from `origin` on: a list of hits, each with `.t` (how many lengths of \
+         `direction` it is away), `.point`, `.normal` (of length 1, outward) and `.uv`. A surface that is only touched is hit once; what is \
+         hidden is hit too.",
+        ("trace(sphere { radius 1 }, <0, 0, 5>, -z)[0].t", "4"),
     ),
     Builtin::new(
         "roots",
@@ -63,6 +66,44 @@ fn number_argument(ctx: &mut dyn Context, arguments: &Arguments<'_>, name: &str,
         Value::Number(x) if x.is_finite() => Ok(x),
         _ => Err(misfit(ctx, arguments, name, i)),
     }
+}
+
+fn trace(ctx: &mut dyn Context, arguments: &Arguments<'_>) -> Outcome {
+    let vector = |i: usize| match arguments.values[i] {
+        Value::Vector3(v) if v.is_finite() => Some(v),
+        _ => None,
+    };
+    let Value::Object(object) = &arguments.values[0] else { return Err(misfit(ctx, arguments, "trace", 0)) };
+    let Some(origin) = vector(1) else { return Err(misfit(ctx, arguments, "trace", 1)) };
+    let Some(direction) = vector(2) else { return Err(misfit(ctx, arguments, "trace", 2)) };
+    if direction == DVec3::ZERO {
+        let said =
+            Diagnostic::new(Code::Undefined, arguments.spans[2], "a ray along the vector 0 goes nowhere");
+        return Err(ctx.fail(said.hint("give the direction in which to look, for example `-y`")));
+    }
+    match ctx.tracer().trace(object, origin, direction, arguments.span) {
+        Ok(hits) => {
+            ctx.reserve(hits.len() * HIT_SIZE, arguments.span)?;
+            Ok(Value::list(hits.iter().map(hit).collect()))
+        }
+        Err(faults) => {
+            faults.into_iter().for_each(|fault| ctx.report(fault));
+            Err(Reported)
+        }
+    }
+}
+
+/// What a hit takes, in elements of lists.
+const HIT_SIZE: usize = 6;
+
+fn hit(hit: &Traced) -> Value {
+    let parts = vec![
+        ("t", Value::Number(hit.t)),
+        ("point", Value::Vector3(hit.point)),
+        ("normal", Value::Vector3(hit.normal)),
+        ("uv", Value::Vector2(hit.uv)),
+    ];
+    Value::Record(Rc::new(Record { name: "a hit", parts }))
 }
 
 /// Most coefficients of `roots`.

@@ -12,11 +12,47 @@ use crate::lang::resolve::program::{
 };
 use crate::lang::table::{Arguments, Builtin, BuiltinBody};
 use crate::lang::value::Value;
-use crate::math::field::{Binary, MAX_CALL, Register, Unary};
+use crate::math::field::{Binary, MAX_CALL, Register, Rule, Unary};
 use std::rc::Rc;
 
 /// Builtins that speak to the person: while rendering nobody listens.
 const SPEAKING: [&str; 3] = ["print", "assert", "error"];
+
+/// What is known of a builtin where it is bounded over intervals.
+fn rule_of(builtin: &str) -> Rule {
+    match builtin {
+        "sin" => Rule::Sin,
+        "cos" => Rule::Cos,
+        "tan" => Rule::Tan,
+        "asin" => Rule::Asin,
+        "acos" => Rule::Acos,
+        "atan" => Rule::Atan,
+        "sinh" => Rule::Sinh,
+        "cosh" => Rule::Cosh,
+        "tanh" => Rule::Tanh,
+        "exp" => Rule::Exp,
+        "ln" => Rule::Ln,
+        "log10" => Rule::Log10,
+        "log2" => Rule::Log2,
+        "cbrt" => Rule::Cbrt,
+        "sign" => Rule::Sign,
+        "round" => Rule::Round,
+        "radians" => Rule::Radians,
+        "degrees" => Rule::Degrees,
+        "atan2" => Rule::Atan2,
+        "mod" => Rule::FlooredMod,
+        "mix" => Rule::Mix,
+        "clamp" => Rule::Clamp,
+        "smoothstep" => Rule::Smoothstep,
+        "cross" => Rule::Cross,
+        "length" => Rule::Length,
+        "normalize" => Rule::Normalize,
+        "distance" => Rule::Distance,
+        "noise" => Rule::Noise,
+        "fbm" => Rule::Fbm,
+        _ => Rule::Opaque,
+    }
+}
 
 impl<'c> Compiler<'c> {
     pub(super) fn call_function(&mut self, call: &'c CallFunction, span: Span) -> Compiled {
@@ -254,15 +290,20 @@ impl<'c> Compiler<'c> {
             BuiltinBody::Number2(f) => self.spread(builtin, &components, &values, span, |c, of| {
                 of[1..].iter().fold(of[0], |a, b| c.number2(builtin.name, *f, a, *b, span))
             }),
-            BuiltinBody::Number3(_, f) => {
-                self.spread(builtin, &components, &values, span, |c, of| c.at(span).call_n(*f, of, 1)[0])
+            BuiltinBody::Number3(_, f) => self.spread(builtin, &components, &values, span, |c, of| {
+                c.at(span).call_n(*f, rule_of(builtin.name), of, 1)[0]
+            }),
+            BuiltinBody::Numbers(..)
+                if builtin.name == "dot" && components[0].len() == components[1].len() =>
+            {
+                Ok(Symbol::Number(self.dot(&components[0], &components[1], span)))
             }
             BuiltinBody::Numbers(shape, f) => {
                 let sizes: Vec<usize> = components.iter().map(Vec::len).collect();
                 let flat: Vec<Register> = components.concat();
                 match shape(&sizes) {
                     Some(n) if flat.len() <= MAX_CALL => {
-                        Ok(number_or_vector(self.at(span).call_n(*f, &flat, n)))
+                        Ok(number_or_vector(self.at(span).call_n(*f, rule_of(builtin.name), &flat, n)))
                     }
                     _ => Err(self.wrong_builtin(builtin, &values, span)),
                 }
@@ -329,6 +370,15 @@ impl<'c> Compiler<'c> {
         Ok(number_or_vector(results))
     }
 
+    /// Written out, so that a vector's product with itself is known to be of squares.
+    fn dot(&mut self, a: &[Register], b: &[Register], span: Span) -> Register {
+        let builder = self.at(span);
+        let products: Vec<Register> =
+            a.iter().zip(b).map(|(a, b)| builder.binary(Binary::Mul, *a, *b)).collect();
+        let sum = products.iter().copied().reduce(|sum, p| builder.binary(Binary::Add, sum, p));
+        sum.expect("vectors have components")
+    }
+
     fn number1(&mut self, name: &str, f: fn(f64) -> f64, a: Register, span: Span) -> Register {
         let builder = self.at(span);
         match name {
@@ -336,7 +386,7 @@ impl<'c> Compiler<'c> {
             "sqrt" => builder.unary(Unary::Sqrt, a),
             "floor" => builder.unary(Unary::Floor, a),
             "ceil" => builder.unary(Unary::Ceil, a),
-            _ => builder.call1(f, a),
+            _ => builder.call1(f, rule_of(name), a),
         }
     }
 
@@ -352,8 +402,8 @@ impl<'c> Compiler<'c> {
         match name {
             "min" => builder.binary(Binary::Min, a, b),
             "max" => builder.binary(Binary::Max, a, b),
-            "pow" => builder.call2(operators::power, a, b),
-            _ => builder.call2(f, a, b),
+            "pow" => builder.call2(operators::power, Rule::Power, a, b),
+            _ => builder.call2(f, rule_of(name), a, b),
         }
     }
 

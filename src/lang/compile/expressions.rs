@@ -7,7 +7,7 @@ use crate::lang::eval::{equal, operators, place, swizzle};
 use crate::lang::members;
 use crate::lang::resolve::program::{Access, Arithmetic, Comparison, Comprehension, Expr, ExprKind, Range};
 use crate::lang::value::{RangeValue, Value};
-use crate::math::field::{Binary, Register, Unary};
+use crate::math::field::{Binary, Register, Rule, Unary};
 use std::rc::Rc;
 
 /// Whole powers up to this are written out as products, in the order in which the evaluator multiplies.
@@ -214,7 +214,7 @@ impl<'c> Compiler<'c> {
                 Some(n) if n == n.trunc() && n.abs() <= f64::from(WRITTEN_OUT) && n != 0.0 => {
                     self.whole_power(a, n as i32, span)
                 }
-                _ => builder.call2(operators::power, a, b),
+                _ => builder.call2(operators::power, Rule::Power, a, b),
             },
         }
     }

@@ -4,7 +4,7 @@ use super::{Evaluator, Said};
 use crate::diag::{Diagnostic, Span};
 use crate::lang::compile;
 use crate::lang::members;
-use crate::lang::table::{Context, Outcome};
+use crate::lang::table::{Context, Outcome, Trace};
 use crate::lang::value::Value;
 use crate::scene::assets::Loader;
 use crate::scene::{SampleInput, SampledFunction};
@@ -64,6 +64,10 @@ impl Context for Evaluator<'_> {
 
     fn estimated(&mut self, error: f64) {
         self.estimate = Some(error);
+    }
+
+    fn tracer(&self) -> &dyn Trace {
+        self.run.tracer
     }
 
     fn time(&self) -> (f64, f64) {

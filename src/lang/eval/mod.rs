@@ -24,7 +24,7 @@ pub(super) use fields::{components, letters, place, swizzle};
 use super::limits::Limits;
 use super::resolve::load::Files;
 use super::resolve::program::{FunctionId, Program, UnitId};
-use super::table::{Outcome, Reported};
+use super::table::{Outcome, Reported, Trace};
 use super::value::{Given, Value};
 use crate::diag::{Sink, SourceId, Span};
 use crate::scene::assets::Loader;
@@ -44,6 +44,8 @@ pub struct Run<'p> {
     pub files: &'p Files,
     /// The way files are read.
     pub loader: &'p dyn Loader,
+    /// Who finds where rays meet objects.
+    pub tracer: &'p dyn Trace,
     /// Guards.
     pub limits: Limits,
     /// `time` and `frame`.

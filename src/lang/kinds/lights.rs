@@ -228,7 +228,8 @@ fn emitter(ctx: &mut dyn Context, block: &Block) -> Outcome<Arc<Object>> {
         | Shape::Torus(_)
         | Shape::Surface(_)
         | Shape::Group(_)
-        | Shape::Csg(_) => {
+        | Shape::Csg(_)
+        | Shape::Implicit(_) => {
             let message = "an area light is a `rect`, `disc`, `sphere`, `triangle` or `mesh`";
             let hint = "any other object shines with `material { emit … }`";
             Err(block.fault(ctx, Code::BadProperty, "area", message, hint))

@@ -50,7 +50,7 @@ pub static ALL: &[&Kind] = &[
     &surfaces::TUBE,
     &surfaces::LATHE,
     &surfaces::EXTRUDE,
-    &unbuilt::IMPLICIT,
+    &solids::IMPLICIT,
     &solids::UNION,
     &solids::INTERSECTION,
     &solids::DIFFERENCE,

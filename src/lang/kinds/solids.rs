@@ -1,9 +1,10 @@
 //! Solids put together: union, intersection, difference.
 
 use super::shapes::finish;
+use crate::diag::Code;
 use crate::lang::table::{Block, Context, Kind, Outcome, Property, Role, Type};
 use crate::lang::value::{Given, Value};
-use crate::scene::{Csg, CsgOp, Node, Shape, solid_fault};
+use crate::scene::{Csg, CsgOp, Implicit, Node, SampleInput, Shape, solid_fault};
 use std::sync::Arc;
 
 const INVERSE: &[Property] =
@@ -50,6 +51,58 @@ pub static DIFFERENCE: Kind = put_together(
     "difference { sphere { radius 1 }  box { min <0, 0, 0>  max <1, 1, 1> } }",
     |ctx, block| build(ctx, block, CsgOp::Difference),
 );
+
+/// An implicit surface.
+pub static IMPLICIT: Kind = Kind {
+    name: "implicit",
+    doc: "The surface where a function of the point is 0, solid where it is negative. The box cuts it, with a face where it cuts through the \
+          solid. No root is missed, whatever the function: it is followed by interval arithmetic.",
+    example: "implicit { f p => length(p) - 1  within <-1, -1, -1>, <1, 1, 1> }",
+    role: Role::Object,
+    own: &[
+        Property::new(
+            "f",
+            &[&[Type::Function]],
+            "",
+            "the function of the point, negative inside; it runs while rendering",
+        )
+        .required(),
+        Property::new(
+            "within",
+            &[&[Type::Vector3, Type::Vector3]],
+            "",
+            "`min, max`: the corners of least and of greatest coordinates of the box in which it is looked for",
+        )
+        .required(),
+        Property::new(
+            "gradient",
+            &[&[Type::Positive]],
+            "",
+            "a promise that the length of f's gradient in the box does not exceed this: skips empty space sooner. It is checked at \
+             many points, and never needed",
+        ),
+    ],
+    children: false,
+    open: false,
+    build: Some(implicit),
+};
+
+fn implicit(ctx: &mut dyn Context, block: Block) -> Outcome {
+    let corners = block.vectors("within").expect("checked to be there");
+    let within = (corners[0], corners[1]);
+    let size = within.1 - within.0;
+    let mut outcome = Ok(());
+    if !(size.min_element() > 0.0 && size.is_finite()) {
+        let message = "the first corner of `within` must be less than the second in each coordinate";
+        let hint = "write the least corner, then the greatest: `within <-1, -1, -1>, <1, 1, 1>`";
+        outcome = Err(block.fault(ctx, Code::BadGeometry, "within", message, hint));
+    }
+    let f = block.value("f").expect("checked to be there").clone();
+    let function = ctx.sampled(&f, SampleInput::Point, &[1], block.place("f"))?;
+    outcome?;
+    let gradient = block.number("gradient").map(|bound| (bound, block.place("gradient")));
+    finish(ctx, &block, Shape::Implicit(Arc::new(Implicit { function, within, gradient })))
+}
 
 /// The kind of an operation.
 pub fn kind_of(op: CsgOp) -> &'static Kind {

@@ -22,30 +22,6 @@ const fn open(kind: Kind) -> Kind {
     Kind { open: true, ..kind }
 }
 
-/// An implicit surface.
-pub static IMPLICIT: Kind = unbuilt(
-    "implicit",
-    "The surface where a function of the point is 0; solid where it is negative.",
-    "implicit { f p => length(p) - 1  within <-1, -1, -1>, <1, 1, 1> }",
-    Role::Object,
-    &[
-        Property::new("f", &[&[Type::Function]], "", "the function of the point, negative inside").required(),
-        Property::new(
-            "within",
-            &[&[Type::Vector3, Type::Vector3]],
-            "",
-            "least and greatest corner of the box in which it is looked for",
-        )
-        .required(),
-        Property::new(
-            "gradient",
-            &[&[Type::Positive]],
-            "",
-            "a bound on the gradient, for speed; roots are safe without",
-        ),
-    ],
-);
-
 /// A skinned surface.
 pub static SKIN: Kind = unbuilt(
     "skin",

@@ -1,6 +1,6 @@
 //! Making a tape, step by step.
 
-use super::{Binary, Call1, Call2, CallN, FaultKind, Field, Held, MAX_CALL, Op, Register, Unary};
+use super::{Binary, Call1, Call2, CallN, FaultKind, Field, Held, MAX_CALL, Op, Register, Rule, Unary};
 use std::collections::HashMap;
 use std::sync::Arc;
 
@@ -122,28 +122,34 @@ impl FieldBuilder {
     }
 
     /// f(a).
-    pub fn call1(&mut self, f: Call1, a: Register) -> Register {
+    pub fn call1(&mut self, f: Call1, rule: Rule, a: Register) -> Register {
         let to = self.fresh(1);
-        self.push(Op::Call1(f, to, a));
+        self.push(Op::Call1(f, rule, to, a));
         to
     }
 
     /// f(a, b).
-    pub fn call2(&mut self, f: Call2, a: Register, b: Register) -> Register {
+    pub fn call2(&mut self, f: Call2, rule: Rule, a: Register, b: Register) -> Register {
         let to = self.fresh(1);
-        self.push(Op::Call2(f, to, a, b));
+        self.push(Op::Call2(f, rule, to, a, b));
         to
     }
 
     /// f of up to [`MAX_CALL`] arguments, with up to as many results; the result registers, in order.
-    pub fn call_n(&mut self, f: CallN, arguments: &[Register], n_results: usize) -> Vec<Register> {
+    pub fn call_n(
+        &mut self,
+        f: CallN,
+        rule: Rule,
+        arguments: &[Register],
+        n_results: usize,
+    ) -> Vec<Register> {
         if arguments.len() > MAX_CALL || n_results > MAX_CALL {
             self.too_large = true;
             return vec![Register(0); n_results];
         }
         let from = self.list(arguments);
         let to = self.fresh(n_results);
-        self.push(Op::CallN { f, from, n_from: arguments.len() as u8, to, n_to: n_results as u8 });
+        self.push(Op::CallN { f, rule, from, n_from: arguments.len() as u8, to, n_to: n_results as u8 });
         (0..n_results).map(|i| Register(to.0.wrapping_add(i as u16))).collect()
     }
 

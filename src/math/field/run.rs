@@ -70,15 +70,15 @@ fn step(field: &Field, op: Op, r: &mut [f64]) -> Result<Option<u32>, FaultKind> 
         Op::Select(to, condition, a, b) => {
             r[to.index()] = if get(condition) != 0.0 { get(a) } else { get(b) };
         }
-        Op::Call1(f, to, a) => {
+        Op::Call1(f, _, to, a) => {
             let a = get(a);
             r[to.index()] = checked(f(a), a.is_finite())?;
         }
-        Op::Call2(f, to, a, b) => {
+        Op::Call2(f, _, to, a, b) => {
             let (a, b) = (get(a), get(b));
             r[to.index()] = checked(f(a, b), a.is_finite() && b.is_finite())?;
         }
-        Op::CallN { f, from, n_from, to, n_to } => {
+        Op::CallN { f, rule: _, from, n_from, to, n_to } => {
             call_n(f, r, from.index(), n_from as usize, to.index(), n_to as usize)?;
         }
         Op::CallHeld { held, from, n_from, to, n_to } => {

@@ -18,7 +18,7 @@ fn arithmetic_is_that_of_f64() {
     let three = b.constant(3.0);
     let product = b.binary(Binary::Mul, x, three);
     let sum = b.binary(Binary::Add, product, y);
-    let sine = b.call1(sin, sum);
+    let sine = b.call1(sin, Rule::Sin, sum);
     let field = b.finish(&[sine, x]).unwrap();
     let mut out = [0.0; 2];
     field.eval(&[0.3, -0.1], &mut out).unwrap();
@@ -32,7 +32,7 @@ fn a_fault_names_the_site_of_its_operation() {
     b.site(7);
     let quotient = b.binary(Binary::Div, one, b.input(0));
     b.site(9);
-    let log = b.call1(ln, quotient);
+    let log = b.call1(ln, Rule::Ln, quotient);
     let field = b.finish(&[log]).unwrap();
     assert_eq!(value(&field, &[1.0]), Ok(0.0));
     assert_eq!(value(&field, &[0.0]), Err(Fault { site: 7, kind: FaultKind::DivisionByZero }));
@@ -123,7 +123,7 @@ fn calls_of_many_arguments_read_and_write_in_order() {
     let mut b = FieldBuilder::new(2);
     let ten = b.constant(10.0);
     let arguments = [b.input(0), b.input(1), ten];
-    let results = b.call_n(swap_and_scale, &arguments, 2);
+    let results = b.call_n(swap_and_scale, Rule::Opaque, &arguments, 2);
     let field = b.finish(&results).unwrap();
     let mut out = [0.0; 2];
     field.eval(&[1.0, 2.0], &mut out).unwrap();

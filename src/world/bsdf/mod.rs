@@ -74,6 +74,9 @@ pub struct Scattered {
 impl Bsdf {
     /// The material where a ray met it. The world is only asked where a bump map needs its neighbourhood.
     pub fn at(world: &World, hit: &Hit<'_>, ray: &Ray) -> Sampled<Bsdf> {
+        if let Some(fault) = hit.fault {
+            return Err(fault);
+        }
         let material = hit.material;
         let wo = -ray.direction;
         let outside = wo.dot(hit.geometric_normal) >= 0.0;

@@ -166,7 +166,9 @@ impl Gathering<'_> {
 /// surfaces that are met directly glow without being sampled.
 fn emitter_shape(shape: &Shape) -> Option<EmitterShape> {
     Some(match shape {
-        Shape::Plane(_) | Shape::Csg(_) | Shape::Patch(_) | Shape::Swept(_) => return None,
+        Shape::Plane(_) | Shape::Csg(_) | Shape::Implicit(_) | Shape::Patch(_) | Shape::Swept(_) => {
+            return None;
+        }
         Shape::Sphere(s) => EmitterShape::Sphere { center: s.center, radius: s.radius },
         Shape::Disc(s) => EmitterShape::Disc(s.0),
         Shape::Rect(s) => EmitterShape::Rect(s.shape),

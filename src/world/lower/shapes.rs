@@ -47,9 +47,11 @@ pub(super) fn convert(shape: scene::Shape) -> Result<Shape, String> {
             check(good, || "a torus needs two positive radii".into())?;
             Ok(Shape::Torus(Box::new(Torus::new(*torus))))
         }
-        scene::Shape::Mesh(_) | scene::Shape::Surface(_) | scene::Shape::Group(_) | scene::Shape::Csg(_) => {
-            Err("not a simple shape".into())
-        }
+        scene::Shape::Mesh(_)
+        | scene::Shape::Surface(_)
+        | scene::Shape::Group(_)
+        | scene::Shape::Csg(_)
+        | scene::Shape::Implicit(_) => Err("not a simple shape".into()),
     }
 }
 

@@ -5,8 +5,8 @@ use super::{Around, Lowering, shapes};
 use crate::diag::{Code, Diagnostic, Span};
 use crate::scene::{self, CsgOp, Node, Object, Shape, solid_fault};
 use crate::world::aggregate::Aggregate;
-use crate::world::shape::Csg;
 use crate::world::shape::csg::{Part, Solid};
+use crate::world::shape::{self as world, Csg};
 use std::collections::HashMap;
 use std::sync::Arc;
 
@@ -18,6 +18,7 @@ const MAX_DEPTH: usize = 1024;
 #[derive(Default)]
 pub(super) struct Solids {
     by_address: HashMap<*const scene::Csg, (Option<Arc<Csg>>, Arc<scene::Csg>)>,
+    implicits: HashMap<*const scene::Implicit, (Arc<world::Implicit>, Arc<scene::Implicit>)>,
     /// Whether a mesh is closed, by its aggregate.
     closed: HashMap<u32, bool>,
 }
@@ -81,6 +82,35 @@ impl Lowering<'_> {
         }
     }
 
+    /// A shape on its own; none, said, where it is degenerate.
+    pub(super) fn simple(&mut self, shape: Shape, span: Span) -> Option<world::Shape> {
+        match shape {
+            Shape::Implicit(implicit) => Some(world::Shape::Implicit(self.implicit(implicit))),
+            other => shapes::convert(other)
+                .map_err(|fault| self.sink.push(Diagnostic::new(Code::BadGeometry, span, fault)))
+                .ok(),
+        }
+    }
+
+    fn implicit(&mut self, implicit: Arc<scene::Implicit>) -> Arc<world::Implicit> {
+        if let Some((known, _)) = self.solids.implicits.get(&Arc::as_ptr(&implicit)) {
+            return Arc::clone(known);
+        }
+        let (min, max) = implicit.within;
+        let steepest = implicit.gradient.map(|(bound, _)| bound);
+        let made = Arc::new(world::Implicit::new(Arc::clone(&implicit.function), min, max, steepest));
+        if let (Some((bound, at)), Some((p, slope))) = (implicit.gradient, made.broken_promise()) {
+            let message = format!(
+                "the gradient of `f` is {slope:.4} at <{}, {}, {}>, more than {bound}",
+                p.x, p.y, p.z
+            );
+            let hint = "leave `gradient` out: the surface is found without it";
+            self.sink.push(Diagnostic::new(Code::BadProperty, at, message).hint(hint));
+        }
+        self.solids.implicits.insert(Arc::as_ptr(&implicit), (Arc::clone(&made), implicit));
+        made
+    }
+
     fn solid(&mut self, object: &Object) -> Option<Solid> {
         if let Shape::Surface(source) = &object.shape {
             return match self.surface(Arc::clone(source), object.span)? {
@@ -89,9 +119,7 @@ impl Lowering<'_> {
             };
         }
         let Shape::Mesh(source) = &object.shape else {
-            let shape = shapes::convert(object.shape.clone());
-            let fault = |text| Diagnostic::new(Code::BadGeometry, object.span, text);
-            return shape.map_err(|text| self.sink.push(fault(text))).ok().map(Solid::Shape);
+            return self.simple(object.shape.clone(), object.span).map(Solid::Shape);
         };
         let number = self.mesh(Arc::clone(source), object.span)?;
         let Aggregate::Mesh(mesh) = &self.aggregates[number as usize] else { return None };

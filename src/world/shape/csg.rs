@@ -22,6 +22,7 @@ use crate::math::error::gamma;
 use crate::math::{Aabb, Affine};
 use crate::scene::CsgOp;
 use crate::world::bvh::Tree;
+use crate::world::texture::TextureFault;
 use glam::DVec3;
 use std::sync::Arc;
 
@@ -197,6 +198,18 @@ impl Csg {
             surface.error += DVec3::splat(self.spread(ray, meet, &surface));
         }
         PartSurface { whole: surface, own_point }
+    }
+
+    /// Why there is no surface at a meeting, where there is none.
+    pub fn fault(&self, ray: &LocalRay, meet: &Meet) -> Option<TextureFault> {
+        let part = self.part(meet);
+        let Solid::Shape(shape) = &part.solid else { return None };
+        let (local, factor) = part.local(ray)?;
+        shape.fault(&local, &Meet { t: meet.t * factor, part: 0, ..*meet })
+    }
+
+    fn is_unknown(&self, meet: &Meet) -> bool {
+        matches!(&self.part(meet).solid, Solid::Shape(shape) if shape.is_unknown(meet))
     }
 
     /// The surface of one part in the space of the whole, and the point in its own.

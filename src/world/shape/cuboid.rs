@@ -34,7 +34,7 @@ impl Cuboid {
 
     /// Where the ray enters and leaves.
     #[inline(always)]
-    fn ends(&self, ray: &LocalRay) -> Option<(Meet, Meet)> {
+    pub(super) fn ends(&self, ray: &LocalRay) -> Option<(Meet, Meet)> {
         let (mut near, mut far) = ((f64::NEG_INFINITY, 0), (f64::INFINITY, 0));
         for axis in 0..3 {
             let inverse = 1.0 / ray.direction[axis];

@@ -9,6 +9,7 @@ mod cone;
 pub mod csg;
 mod cuboid;
 mod disc;
+pub mod implicit;
 pub mod mesh;
 mod patch;
 mod plane;
@@ -25,6 +26,7 @@ pub use cone::Cone;
 pub use csg::Csg;
 pub use cuboid::Cuboid;
 pub use disc::Disc;
+pub use implicit::Implicit;
 pub use patch::PatchShape;
 pub use plane::Plane;
 pub use rect::Rect;
@@ -35,6 +37,7 @@ pub use triangle::Triangle;
 
 use crate::math::exact::{exponent, power_of_two};
 use crate::math::{Aabb, Affine};
+use crate::world::texture::TextureFault;
 use glam::{DVec2, DVec3};
 use std::sync::Arc;
 
@@ -129,6 +132,7 @@ pub enum Shape {
     Csg(Arc<Csg>),
     Patch(Arc<PatchShape>),
     Swept(Arc<Swept>),
+    Implicit(Arc<Implicit>),
 }
 
 impl Shape {
@@ -146,6 +150,7 @@ impl Shape {
             Shape::Csg(s) => s.meet(ray, limit),
             Shape::Patch(s) => s.meet(ray, limit),
             Shape::Swept(s) => s.meet(ray, limit),
+            Shape::Implicit(s) => s.meet(ray, limit),
         }
     }
 
@@ -164,6 +169,7 @@ impl Shape {
             Shape::Csg(s) => s.crossings(ray, out),
             Shape::Patch(s) => s.crossings(ray, out),
             Shape::Swept(s) => s.crossings(ray, out),
+            Shape::Implicit(s) => s.crossings(ray, out),
             Shape::Plane(_) | Shape::Disc(_) | Shape::Rect(_) | Shape::Triangle(_) => {
                 out.extend(self.meet(ray, f64::MAX));
             }
@@ -175,6 +181,7 @@ impl Shape {
         match self {
             Shape::Plane(s) => s.starts_below(ray, n_crossings > 0),
             Shape::Csg(s) => s.starts_inside(ray),
+            Shape::Implicit(s) => s.starts_inside(ray),
             _ => n_crossings % 2 == 1,
         }
     }
@@ -193,6 +200,21 @@ impl Shape {
             Shape::Csg(s) => s.surface(ray, meet).whole,
             Shape::Patch(s) => s.surface(ray, meet),
             Shape::Swept(s) => s.surface(ray, meet),
+            Shape::Implicit(s) => s.surface(ray, meet),
+        }
+    }
+
+    /// Whether there is no surface at a meeting, but a place where it is not known.
+    fn is_unknown(&self, meet: &Meet) -> bool {
+        matches!(self, Shape::Implicit(_) if meet.face >= implicit::UNDEFINED)
+    }
+
+    /// Why there is no surface at a meeting, where there is none: a function of the scene is undefined there.
+    pub fn fault(&self, ray: &LocalRay, meet: &Meet) -> Option<TextureFault> {
+        match self {
+            Shape::Implicit(s) => s.fault(ray, meet),
+            Shape::Csg(s) => s.fault(ray, meet),
+            _ => None,
         }
     }
 
@@ -210,6 +232,7 @@ impl Shape {
             (Shape::Triangle(s), _) => s.bounds(),
             (Shape::Patch(s), _) => s.bounds(),
             (Shape::Swept(s), _) => s.bounds(),
+            (Shape::Implicit(s), _) => s.bounds(),
         };
         transform.map_or(local, |transform| image_of(local, transform))
     }

@@ -44,6 +44,7 @@ pub fn kind_of(shape: &Shape, asked: impl Fn(&str) -> bool) -> &'static Kind {
         },
         Shape::Group(_) => &objects::GROUP,
         Shape::Csg(csg) => solids::kind_of(csg.op),
+        Shape::Implicit(_) => &solids::IMPLICIT,
     }
 }
 
@@ -96,7 +97,7 @@ pub fn shape(shape: &Shape, new: &[Given]) -> Option<Vec<Part>> {
             MeshSource::File { .. } | MeshSource::Inline(_) => return None,
         },
         Shape::Surface(surface) => return of_surface(surface),
-        Shape::Group(_) | Shape::Csg(_) => return None,
+        Shape::Group(_) | Shape::Csg(_) | Shape::Implicit(_) => return None,
     })
 }
 

@@ -1,8 +1,8 @@
 //! The walk of a ray through the parts.
 
-use super::{COINCIDENT, Csg, Tally, doubt, reach};
+use super::{COINCIDENT, Csg, Solid, Tally, doubt, reach};
 use crate::world::bvh::clip;
-use crate::world::shape::{LocalRay, Meet, Surface};
+use crate::world::shape::{LocalRay, Meet, Shape, Surface};
 use std::cell::Cell;
 
 /// Meetings farther apart than this share of the numbers that they were computed from are not tested for coincidence.
@@ -16,19 +16,69 @@ struct Walk {
     tallies: Vec<Tally>,
     /// Per part.
     inside: Vec<bool>,
+    /// Meetings at one place, not passed yet.
+    together: Vec<Meet>,
+    /// A part that is expensive to follow: it is met as the walk goes on, and no farther than it goes.
+    slow: Option<u32>,
+}
+
+impl Walk {
+    const NEW: Walk = Walk {
+        meetings: Vec::new(),
+        tallies: Vec::new(),
+        inside: Vec::new(),
+        together: Vec::new(),
+        slow: None,
+    };
 }
 
 thread_local! {
     /// Kept between rays so that a walk does not allocate.
-    static SPARE: Cell<Walk> = const {
-        Cell::new(Walk { meetings: Vec::new(), tallies: Vec::new(), inside: Vec::new() })
-    };
+    static SPARE: Cell<Walk> = const { Cell::new(Walk::NEW) };
 }
 
-/// Meetings at one place, by their range among all, and that at which the whole is entered or left.
+/// Meetings at one place, and that at which the whole is entered or left.
 struct Turn<'w> {
     at: Meet,
     together: &'w [Meet],
+}
+
+/// A walk going on: meetings come in order, those at one place are passed together.
+struct Steps<'w, F> {
+    csg: &'w Csg,
+    ray: &'w LocalRay,
+    limit: f64,
+    walk: &'w mut Walk,
+    found: F,
+    stopped: bool,
+}
+
+impl<F: FnMut(&Turn<'_>) -> bool> Steps<'_, F> {
+    /// The next meeting; false once nothing more is wanted.
+    fn meet(&mut self, meet: Meet) -> bool {
+        if let Some(last) = self.walk.together.last()
+            && !self.csg.coincide(self.ray, last, &meet)
+        {
+            self.pass();
+        }
+        self.stopped |= self.walk.together.is_empty() && meet.t > self.limit;
+        if !self.stopped {
+            self.walk.together.push(meet);
+        }
+        !self.stopped
+    }
+
+    /// Passes what has come together.
+    fn pass(&mut self) {
+        let Walk { tallies, inside, together, .. } = &mut *self.walk;
+        if let Some(mut at) = self.csg.pass(together, tallies, inside) {
+            if together.len() > 1 {
+                at.part |= COINCIDENT;
+            }
+            self.stopped |= !(self.found)(&Turn { at, together });
+        }
+        together.clear();
+    }
 }
 
 impl Csg {
@@ -79,32 +129,51 @@ impl Csg {
     }
 
     /// Calls `found` at each place up to the limit where the whole is entered or left, until it says false.
-    fn each_turn(&self, ray: &LocalRay, limit: f64, mut found: impl FnMut(&Turn<'_>) -> bool) {
+    fn each_turn(&self, ray: &LocalRay, limit: f64, found: impl FnMut(&Turn<'_>) -> bool) {
         let mut walk = SPARE.take();
         self.gather(ray, &mut walk);
-        let Walk { meetings, tallies, inside } = &mut walk;
-        let mut from = 0;
-        while from < meetings.len() && meetings[from].t <= limit {
-            let mut to = from + 1;
-            while to < meetings.len() && self.coincide(ray, &meetings[to - 1], &meetings[to]) {
-                to += 1;
-            }
-            let together = &mut meetings[from..to];
-            from = to;
-            let Some(mut at) = self.pass(together, tallies, inside) else { continue };
-            if together.len() > 1 {
-                at.part |= COINCIDENT;
-            }
-            if !found(&Turn { at, together }) {
-                break;
-            }
+        let meetings = std::mem::take(&mut walk.meetings);
+        let slow = walk.slow;
+        let mut steps = Steps { csg: self, ray, limit, walk: &mut walk, found, stopped: false };
+        let mut rest = 0;
+        if let Some(number) = slow {
+            self.each_of_slow(number, ray, limit, |meet| {
+                let before = |other: &Meet| other.t < meet.t || (other.t == meet.t && other.part < number);
+                while let Some(other) = meetings.get(rest).filter(|other| before(other)) {
+                    rest += 1;
+                    if !steps.meet(*other) {
+                        return false;
+                    }
+                }
+                steps.meet(meet)
+            });
         }
+        while !steps.stopped && rest < meetings.len() && steps.meet(meetings[rest]) {
+            rest += 1;
+        }
+        if !steps.stopped {
+            steps.pass();
+        }
+        walk.meetings = meetings;
         SPARE.set(walk);
+    }
+
+    fn each_of_slow(&self, number: u32, ray: &LocalRay, limit: f64, mut found: impl FnMut(Meet) -> bool) {
+        let part = &self.parts[number as usize];
+        let (Solid::Shape(Shape::Implicit(implicit)), Some((local, factor))) = (&part.solid, part.local(ray))
+        else {
+            return;
+        };
+        implicit.each_crossing(&local, limit * factor, |meet| {
+            found(Meet { t: meet.t / factor, part: number, ..meet })
+        });
     }
 
     /// Collects the meetings with all parts, and where the ray starts.
     fn gather(&self, ray: &LocalRay, walk: &mut Walk) {
         walk.meetings.clear();
+        walk.together.clear();
+        walk.slow = None;
         walk.tallies.clear();
         walk.tallies.extend_from_slice(&self.outside);
         walk.inside.clear();
@@ -128,6 +197,13 @@ impl Csg {
     fn gather_part(&self, number: u32, ray: &LocalRay, walk: &mut Walk) {
         let part = &self.parts[number as usize];
         let Some((local, factor)) = part.local(ray) else { return };
+        if let (Solid::Shape(Shape::Implicit(implicit)), None) = (&part.solid, walk.slow) {
+            walk.slow = Some(number);
+            if implicit.starts_inside(&local) {
+                self.turn(number, &mut walk.tallies, &mut walk.inside);
+            }
+            return;
+        }
         let first = walk.meetings.len();
         part.solid.crossings(&local, &mut walk.meetings);
         let met = &mut walk.meetings[first..];
@@ -164,16 +240,18 @@ impl Csg {
         if together.len() > 1 {
             together.sort_by_key(|meet| meet.part);
         }
-        let mut turned = None;
+        let (mut turned, mut unknown) = (None, None);
         for meet in together.iter() {
             self.turn(meet.part, tallies, inside);
             if whole.holds(tallies[0]) == before {
                 turned = None;
             } else {
                 turned = turned.or(Some(*meet));
+                // A part that is not known here stands twice, and turns nothing; it matters where it would.
+                unknown = unknown.or(self.is_unknown(meet).then_some(*meet));
             }
         }
-        turned
+        turned.or(unknown)
     }
 
     /// Whether two meetings, the second not before the first, are at one place as far as rounding can tell. Those of one part are

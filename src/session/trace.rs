@@ -1,0 +1,71 @@
+//! What `trace` of the language asks: the true surfaces of objects, met by rays while a scene is evaluated.
+
+use crate::diag::{Code, Diagnostic, Severity, Span};
+use crate::lang::table::{Trace, Traced};
+use crate::scene::assets::{AssetCache, Loader};
+use crate::scene::{Node, Object};
+use crate::world::{Hit, World};
+use glam::DVec3;
+use std::cell::RefCell;
+use std::collections::HashMap;
+use std::rc::Rc;
+use std::sync::Arc;
+
+/// No more objects than this are kept ready: a loop may trace a new one in each turn.
+const MOST_KEPT: usize = 64;
+
+/// Objects made ready for rays, each once.
+pub(super) struct Tracer<'a> {
+    assets: AssetCache<'a>,
+    /// By address; the object is kept so that no other takes its place.
+    ready: RefCell<HashMap<*const Object, (Arc<Object>, Ready)>>,
+}
+
+/// An object's world, or what is wrong with it.
+type Ready = Rc<Result<World, Vec<Diagnostic>>>;
+
+impl<'a> Tracer<'a> {
+    pub fn new(loader: &'a dyn Loader) -> Self {
+        Tracer { assets: AssetCache::new(loader), ready: RefCell::default() }
+    }
+
+    fn ready(&self, object: &Arc<Object>) -> Ready {
+        let mut ready = self.ready.borrow_mut();
+        if let Some((_, known)) = ready.get(&Arc::as_ptr(object)) {
+            return Rc::clone(known);
+        }
+        let (world, found) = World::of_shapes(vec![Node::Object(Arc::clone(object))], &self.assets);
+        let errors: Vec<Diagnostic> = found.into_iter().filter(|d| d.severity == Severity::Error).collect();
+        let made = Rc::new(if errors.is_empty() { Ok(world) } else { Err(errors) });
+        if ready.len() >= MOST_KEPT {
+            ready.clear();
+        }
+        ready.insert(Arc::as_ptr(object), (Arc::clone(object), Rc::clone(&made)));
+        made
+    }
+}
+
+impl Trace for Tracer<'_> {
+    fn trace(
+        &self,
+        object: &Arc<Object>,
+        origin: DVec3,
+        direction: DVec3,
+        at: Span,
+    ) -> Result<Vec<Traced>, Vec<Diagnostic>> {
+        match &*self.ready(object) {
+            Ok(world) => world.every_hit(origin, direction).iter().map(|hit| traced(hit, at)).collect(),
+            Err(faults) => Err(faults.iter().map(|fault| fault.clone().also(at, "traced here")).collect()),
+        }
+    }
+}
+
+fn traced(hit: &Hit<'_>, at: Span) -> Result<Traced, Vec<Diagnostic>> {
+    if let Some(fault) = hit.fault {
+        let p = hit.point;
+        let message = format!("{} on the way of this ray, at <{}, {}, {}>", fault.kind.text(), p.x, p.y, p.z);
+        let said = Diagnostic::new(Code::Undefined, at, message).also(fault.span, "of this function");
+        return Err(vec![said]);
+    }
+    Ok(Traced { t: hit.t, point: hit.point, normal: hit.normal, uv: hit.uv })
+}
