@@ -91,7 +91,7 @@ pub(super) fn call_n<const N: usize>(f: CallN, rule: Rule, from: &[Enclosed<N>],
             to[0] = Enclosed { value: clamped.value.with_partial(crossed), ..clamped };
         }
         Rule::Smoothstep => to[0] = smoothstep(&from[0], &from[1], &from[2]),
-        Rule::Noise => to[0] = noise_of(from, noise::steepest(from.len()), |p| noise::noise(p)),
+        Rule::Noise => to[0] = noise_of(from, noise::steepest(from.len()), noise::noise),
         Rule::Fbm => to[0] = fbm(f, from),
         _ => unknown(from, to, |from, to| {
             f(from, to);
