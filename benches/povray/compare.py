@@ -21,6 +21,7 @@ CASES = [
     ("flake", 800, 600, ["Declare=D=5"], ["--set", "levels=5"], 3, "render"),
     ("mesh", 1024, 768, [], [], 4, "render"),
     ("patches", 1024, 768, [], [], 3, "render"),
+    ("iso", 640, 480, [], [], 3, "render"),
 ]
 
 

@@ -100,10 +100,8 @@ impl Lowering<'_> {
         let steepest = implicit.gradient.map(|(bound, _)| bound);
         let made = Arc::new(world::Implicit::new(Arc::clone(&implicit.function), min, max, steepest));
         if let (Some((bound, at)), Some((p, slope))) = (implicit.gradient, made.broken_promise()) {
-            let message = format!(
-                "the gradient of `f` is {slope:.4} at <{}, {}, {}>, more than {bound}",
-                p.x, p.y, p.z
-            );
+            let place = p.to_array().map(|x| format!("{x:.3}")).join(", ");
+            let message = format!("the gradient of `f` is {slope:.4} at <{place}>, more than {bound}");
             let hint = "leave `gradient` out: the surface is found without it";
             self.sink.push(Diagnostic::new(Code::BadProperty, at, message).hint(hint));
         }
