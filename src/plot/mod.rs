@@ -1,6 +1,6 @@
 //! Figures: curves in a frame with numbered axes, as characters ([`braille`]), as SVG ([`svg`]) or as pixels ([`raster`]).
 //!
-//! A figure is plain data; [`chart`] lays it out once for all three, which only draw lines, dots and words ([`Canvas`]).
+//! A figure is plain data; `chart` lays it out once for all three, which only draw lines, dots and words (`Canvas`).
 //! Knows nothing of what the curves are of.
 
 pub mod braille;

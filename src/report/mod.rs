@@ -1,10 +1,10 @@
 //! Speed against error: every variant of a kernel measured the same way, as JSON lines, and those lines as a page with plots.
 //!
-//! Two steps that share only the rows: measuring ([`measure`]) writes [`row::Row`]s; [`page`] renders them, so that a
+//! Two steps that share only the rows: measuring ([`mod@measure`]) writes [`row::Row`]s; [`page`] renders them, so that a
 //! reader can plot again without measuring again. Topological errors (missed, spurious, wrong first) are counts of their
 //! own and never averaged into magnitudes.
 //!
-//! Case sets are seeded, so that every error comes again; what is compared with is kept here ([`naive`]) and not in the rooms of the
+//! Case sets are seeded, so that every error comes again; what is compared with is kept here (`naive`) and not in the rooms of the
 //! kernels. A [`trial::Trial`] holds the variants of one component on one case set.
 
 pub mod components;

@@ -1,4 +1,4 @@
-//! The kind `spline`: curves from points. What is wrong with one is worded in [`faults`]; the kernels know no places.
+//! The kind `spline`: curves from points. What is wrong with one is worded in `faults`; the kernels know no places.
 
 mod faults;
 
