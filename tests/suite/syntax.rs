@@ -82,6 +82,13 @@ fn a_property_ends_where_the_next_item_begins() {
 }
 
 #[test]
+fn a_sign_before_a_component_may_stand_apart() {
+    assert_eq!(tree("a <1, - 2, -\t.5>"), tree("a <1, -2, -.5>"));
+    assert_eq!(format("a <1, - 2>").unwrap(), "a <1, -2>\n");
+    assert!(tree("a <1, - -2>").contains("unary"), "two signs are an expression");
+}
+
+#[test]
 fn a_tight_bracket_is_an_index_or_a_call_and_never_another_item() {
     assert_eq!(tree("l [e for e in m]"), tree("l  [e for e in m]"));
     assert_eq!(tree("l\n[e for e in m]"), tree("l; [e for e in m]"));

@@ -21,11 +21,7 @@ impl<'a> Builder<'a> {
         let mut v = [0.0; 4];
         let mut len = 0;
         for part in text[1..text.len() - 1].split(',') {
-            let part = part.trim_ascii();
-            let plain =
-                !part.starts_with('+') && part.bytes().any(|b| b.is_ascii_digit()) && !part.ends_with('.');
-            let value = if plain { part.parse::<f64>().ok().filter(|v| v.is_finite()) } else { None };
-            let (Some(value), Some(component)) = (value, v.get_mut(len)) else {
+            let (Some(value), Some(component)) = (plain_number(part), v.get_mut(len)) else {
                 return self.vector_again(token, span);
             };
             *component = value;
@@ -237,4 +233,13 @@ fn shorten(digits: &str) -> String {
         0..=24 => digits.to_owned(),
         _ => format!("{}…", digits.chars().take(16).collect::<String>()),
     }
+}
+
+/// A number of a vector, with the sign before it, tight or not: blanks must not decide what tree is made.
+fn plain_number(part: &str) -> Option<f64> {
+    let part = part.trim_ascii();
+    let digits = part.strip_prefix('-').map_or(part, str::trim_ascii_start);
+    let plain = digits.starts_with(|c: char| c.is_ascii_digit() || c == '.') && !digits.ends_with('.');
+    let size = if plain { digits.parse::<f64>().ok().filter(|v| v.is_finite())? } else { return None };
+    Some(if digits.len() < part.len() { -size } else { size })
 }
