@@ -1,5 +1,5 @@
-//! Shapes as numbers, without spans: meshes, bases, curves and what is measured on them, patches, surfaces along curves;
-//! skeletons to come.
+//! Shapes as numbers, without spans: meshes, bases, curves and what is measured on them, patches, surfaces along curves,
+//! skeletons.
 
 pub mod any_curve;
 pub mod arc_length;
@@ -13,4 +13,5 @@ pub mod measured;
 pub mod mesh;
 pub mod patch;
 pub mod path;
+pub mod skeleton;
 pub mod surface;

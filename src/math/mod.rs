@@ -16,6 +16,7 @@ pub mod field;
 pub mod hex;
 pub mod interval;
 pub mod isolate;
+pub mod matrix;
 pub mod noise;
 pub mod point;
 pub mod quadrature;
