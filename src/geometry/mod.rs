@@ -9,6 +9,7 @@ pub mod closest;
 pub mod curve;
 pub mod frame;
 pub mod function;
+pub mod ik;
 pub mod measured;
 pub mod mesh;
 pub mod patch;
