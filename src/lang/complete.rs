@@ -5,7 +5,7 @@ use super::builtins;
 use super::kinds::{self, common};
 use super::members::{self, Family};
 use super::table::{Builtin, Kind, Role};
-use crate::syntax::build::{KEYWORDS, KINDS};
+use crate::syntax::build::{KEYWORDS, KINDS, continues_word};
 use crate::syntax::unfinished::End;
 use std::collections::{BTreeSet, HashMap};
 
@@ -29,8 +29,7 @@ pub struct Completion {
 
 /// Completes the end of a text. Nothing within comments and texts.
 pub fn complete(text: &str, visible: &Visible) -> Completion {
-    let is_word = |c: char| c.is_alphanumeric() || c == '_';
-    let start = text.trim_end_matches(is_word).len();
+    let start = text.trim_end_matches(continues_word).len();
     let (before, typed) = text.split_at(start);
     let end = End::of(before);
     let begins_a_name = !typed.starts_with(|c: char| c.is_numeric());
@@ -67,8 +66,7 @@ fn begins_item(before: &str, end: &End) -> bool {
 
 /// What stands behind a dot: of a name that is known its own, of anything else what any value may have.
 fn members_of(value: &str, visible: &Visible) -> BTreeSet<String> {
-    let is_word = |c: char| c.is_alphanumeric() || c == '_';
-    let name = &value[value.trim_end_matches(is_word).len()..];
+    let name = &value[value.trim_end_matches(continues_word).len()..];
     match visible.members.get(name) {
         Some(members) => members.iter().cloned().collect(),
         None if name.starts_with(|c: char| c.is_numeric()) => BTreeSet::new(),
@@ -160,8 +158,7 @@ fn block_around(text: &str, end: &End) -> Around {
 
 /// The builtin whose call a bracket opens.
 fn called(before: &str) -> Option<&'static Builtin> {
-    let is_word = |c: char| c.is_alphanumeric() || c == '_';
-    builtins::find(&before[before.trim_end_matches(is_word).len()..])
+    builtins::find(&before[before.trim_end_matches(continues_word).len()..])
 }
 
 fn named_arguments(builtin: &'static Builtin) -> impl Iterator<Item = String> {

@@ -89,6 +89,36 @@ fn a_sign_before_a_component_may_stand_apart() {
 }
 
 #[test]
+fn a_word_goes_on_with_every_mark_that_the_grammar_lets_it() {
+    for word in ["gT\u{1daa6}", "a\u{c4d}", "a\u{e0100}", "\u{ba}\u{fe20}", "e\u{301}te"] {
+        assert_eq!(format(word).as_deref().ok(), Some(format!("{word}\n").as_str()));
+        assert_eq!(tree(&format!("{word} 1")), format!("property {word}\n  number 1\n"));
+    }
+}
+
+#[test]
+fn a_sign_tight_to_the_word_that_a_placement_begins_with_stays_there() {
+    for (text, laid_out) in [
+        ("a<b?c:d", "a<b ? c : d\n"),
+        ("a-b?c:d", "a-b ? c : d\n"),
+        ("a--b?c:(a<b)", "a--b ? c : (a < b)\n"),
+        ("f(1)<b?c:d", "f(1) < b ? c : d\n"),
+    ] {
+        assert_eq!(format(text).as_deref().ok(), Some(laid_out));
+        assert_eq!(tree(laid_out), tree(text));
+    }
+}
+
+#[test]
+fn a_blank_of_another_writing_is_a_fault_and_no_crash() {
+    for blank in ["\u{2000}", "\u{a0}", "\u{205f}", "\u{3000}"] {
+        assert_eq!(faults(blank), [format!("E0001 «{blank}»")]);
+        assert_eq!(faults(&format!("sphere {blank}{{ }}")), [format!("E0001 «{blank}»")]);
+        survives(&format!("let a = 1 {blank}\nsphere {{ radius {blank} }}{blank}"));
+    }
+}
+
+#[test]
 fn a_tight_bracket_is_an_index_or_a_call_and_never_another_item() {
     assert_eq!(tree("l [e for e in m]"), tree("l  [e for e in m]"));
     assert_eq!(tree("l\n[e for e in m]"), tree("l; [e for e in m]"));

@@ -544,9 +544,9 @@ pub(super) fn opening<'t>(piece: &Piece<'t>) -> Piece<'t> {
     }
 }
 
-/// The end of `start..end` without the blanks before it.
+/// The end of `start..end` without the blanks before it. Blanks are the grammar's: a blank of another writing is a fault.
 fn trimmed(text: &str, start: usize, end: usize) -> usize {
-    start + text[start..end].trim_end().len()
+    start + text[start..end].trim_end_matches([' ', '\t', '\r', '\n']).len()
 }
 
 /// How far the fault at a place reaches: to the next thing that is plainly an item.

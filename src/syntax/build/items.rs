@@ -3,6 +3,7 @@
 use pest::Parser;
 use pest::iterators::{Pair, Pairs};
 
+use super::lexer::continues_word;
 use super::{Grammar, KEYWORDS, KINDS, Origin, Rule};
 use crate::diag::{Code, Diagnostic, Span};
 use crate::syntax::ast::{
@@ -254,7 +255,7 @@ impl<'a> Builder<'a> {
         {
             let said = format!("{what} stands where an item is expected");
             let line = self.text[..at].rsplit('\n').next().unwrap_or_default().trim_end();
-            let hint = if self.text[at..].starts_with('(') && line.ends_with(|c: char| c.is_alphanumeric()) {
+            let hint = if self.text[at..].starts_with('(') && line.ends_with(continues_word) {
                 "a call is written tight, `f(x)`; another value of a property follows a `,`"
             } else {
                 "begin the item with a property's name; another value of the property before follows a `,`"

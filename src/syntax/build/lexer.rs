@@ -92,8 +92,7 @@ impl<'t> Pieces<'t> {
             '\u{1}' => (Sort::Struck, rest.iter().take_while(|b| **b == 1).count()),
             '0'..='9' => (Sort::Number, number(text)),
             '.' if rest.get(1).is_some_and(u8::is_ascii_digit) => (Sort::Number, number(text)),
-            '_' => (Sort::Word, word(text)),
-            c if c.is_alphabetic() => (Sort::Word, word(text)),
+            c if starts_word(c) => (Sort::Word, word(text)),
             '#' => (Sort::Word, 1 + word(&text[1..])),
             '@' | '$' | '~' | '`' | '\'' | '\\' => (Sort::Strange, 1),
             c if c.is_ascii_graphic() => (Sort::Sign, sign(rest)),
@@ -119,8 +118,18 @@ impl<'t> Iterator for Pieces<'t> {
     }
 }
 
+/// Whether a word may begin with a character: what the grammar's `word_start` is.
+pub(crate) fn starts_word(c: char) -> bool {
+    c == '_' || pest::unicode::XID_START(c)
+}
+
+/// Whether a word may go on with a character, such as a digit or an accent of its own: what the grammar's `word_char` is.
+pub(crate) fn continues_word(c: char) -> bool {
+    c == '_' || pest::unicode::XID_CONTINUE(c)
+}
+
 fn word(text: &str) -> usize {
-    text.find(|c: char| !(c.is_alphanumeric() || c == '_')).unwrap_or(text.len())
+    text.find(|c: char| !continues_word(c)).unwrap_or(text.len())
 }
 
 fn number(text: &str) -> usize {

@@ -20,6 +20,7 @@ mod recover;
 mod repair;
 mod statements;
 
+pub(crate) use lexer::continues_word;
 pub(super) use lexer::{Piece, Pieces, Sort};
 pub(super) use places::{ItemPlace, ItemSort, Places, places};
 

@@ -9,7 +9,7 @@ use pest::Parser;
 
 use super::diagnose::{self, Fault};
 use super::items::{Builder, Failure, is_reserved, near_kind, parse_struck, too_deep};
-use super::lexer::{Pieces, Sort};
+use super::lexer::{Pieces, Sort, continues_word};
 use super::outline::{Event, Events, outline};
 use super::{Grammar, Origin, Rule};
 use crate::diag::{Code, Diagnostic};
@@ -184,7 +184,7 @@ impl Mender<'_> {
     /// Whether a brace opens a block of another language: a word that is no kind nor near one heads its line.
     fn is_foreign(&self, open: usize) -> bool {
         let before = self.work[..open].trim_end();
-        let word = before.rsplit(|c: char| !(c.is_alphanumeric() || c == '_')).next().unwrap_or_default();
+        let word = before.rsplit(|c: char| !continues_word(c)).next().unwrap_or_default();
         let heads_line = before[..before.len() - word.len()].trim_end_matches([' ', '\t']);
         !word.is_empty()
             && !is_reserved(word)

@@ -1,7 +1,7 @@
 //! Items and tokens to lines.
 
 use super::WIDTH;
-use super::tree::{Node, NodeSort, comments, nodes};
+use super::tree::{Node, NodeSort, comments, keep_tight, nodes};
 use crate::syntax::build::{ItemPlace, ItemSort, Places};
 
 /// Blanks of a level of braces.
@@ -144,7 +144,11 @@ impl<'t> Layout<'t> {
     }
 
     fn item_nodes(&self, item: &ItemPlace) -> Vec<Node<'t>> {
-        nodes(self.text, item.start, item.end, item.sort == ItemSort::Entry)
+        let mut nodes = nodes(self.text, item.start, item.end, item.sort == ItemSort::Entry);
+        if item.sort == ItemSort::Placement {
+            keep_tight(&mut nodes);
+        }
+        nodes
     }
 
     /// An item on one line, if it was on one.
@@ -394,7 +398,7 @@ impl Spacing {
         self.prefix = matches!(token, "-" | "!") && (is_head || before.is_none_or(|b| !ends_value(b)));
         self.range |= matches!(token, ".." | "..=");
         let Some(before) = before else { return "" };
-        if behind_prefix || before.token() == "." && !is_number(before) {
+        if node.tight || behind_prefix || before.token() == "." && !is_number(before) {
             return "";
         }
         match token {

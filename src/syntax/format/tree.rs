@@ -14,6 +14,8 @@ pub(super) struct Node<'t> {
     pub apart: bool,
     /// Whether a line ends between the node before and this one.
     pub new_line: bool,
+    /// Whether it has to stay tight to the node before; see [`keep_tight`].
+    pub tight: bool,
 }
 
 #[derive(Clone, Debug)]
@@ -80,7 +82,20 @@ fn node<'t>(text: &'t str, piece: &Piece<'t>, first: bool) -> Node<'t> {
         }
         (sort, _) => NodeSort::Token(piece.text, sort),
     };
-    Node { sort, start: piece.start, end: piece.end, apart: piece.apart, new_line: piece.first && !first }
+    let new_line = piece.first && !first;
+    Node { sort, start: piece.start, end: piece.end, apart: piece.apart, new_line, tight: false }
+}
+
+/// Of an item that is placed: `a<b ? c : d` or `a-b ? c : d` would begin a property `a` if its sign were set apart.
+pub(super) fn keep_tight(nodes: &mut [Node<'_>]) {
+    if let [head, sign, rest @ ..] = nodes
+        && matches!(head.sort, NodeSort::Token(_, Sort::Word))
+        && matches!(sign.token(), "<" | "-")
+        && !sign.apart
+    {
+        sign.tight = true;
+        rest.iter_mut().take(1).for_each(|operand| operand.tight = !operand.apart);
+    }
 }
 
 /// The comments of a gap between tokens.
@@ -101,6 +116,7 @@ pub(super) fn comments<'t>(text: &'t str, start: usize, end: usize, out: &mut Ve
             end: from + comment.len(),
             apart: true,
             new_line,
+            tight: false,
         });
         at = from + len;
     }
