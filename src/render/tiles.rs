@@ -12,7 +12,7 @@ use crate::world::{Ray, World};
 use glam::DVec2;
 use rayon::prelude::*;
 use std::sync::Mutex;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 /// Told how far a picture is. Called from any thread, in any order.
 pub trait Progress: Sync {
@@ -55,21 +55,32 @@ pub fn render_in_tiles(
     progress: &dyn Progress,
     cancel: &AtomicBool,
 ) -> Film {
-    let settings = picture.settings;
-    let tiles = tiles_of(settings.crop, tile);
-    let shared = Mutex::new((Film::new(settings.size, settings.crop), 0));
+    let film = Mutex::new(Film::new(picture.settings.size, picture.settings.crop));
+    render_onto(&film, picture, tile, progress, cancel);
+    film.into_inner().unwrap_or_else(|poisoned| poisoned.into_inner())
+}
+
+/// The same onto a bare film of the settings' size and crop, which gets each tile as it is finished: who holds it as well sees what
+/// there is so far.
+pub fn render_onto(
+    film: &Mutex<Film>,
+    picture: Picture<'_>,
+    tile: u32,
+    progress: &dyn Progress,
+    cancel: &AtomicBool,
+) {
+    let tiles = tiles_of(picture.settings.crop, tile);
+    let done = AtomicUsize::new(0);
     let work = |crop: &Crop| {
         if cancel.load(Ordering::Relaxed) {
             return;
         }
         let part = render_tile(picture, *crop, cancel);
-        let mut guard = shared.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
-        place(&mut guard.0, part);
-        guard.1 += 1;
-        progress.tiles(guard.1, tiles.len());
+        let mut film = film.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
+        place(&mut film, part);
+        progress.tiles(done.fetch_add(1, Ordering::Relaxed) + 1, tiles.len());
     };
-    run(settings.threads, &tiles, &work);
-    shared.into_inner().unwrap_or_else(|poisoned| poisoned.into_inner()).0
+    run(picture.settings.threads, &tiles, &work);
 }
 
 /// Does the tiles on as many threads as asked for. One thread, or one tile, starts no pool.

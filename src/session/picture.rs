@@ -13,6 +13,7 @@ use crate::render::{self, Tracer};
 use crate::scene::assets::Loader;
 use crate::scene::{Camera, RenderSettings, Scene};
 use crate::world::{World, WorldOptions};
+use std::sync::Mutex;
 use std::sync::atomic::AtomicBool;
 
 /// What is asked of a picture beside what the scene says.
@@ -107,11 +108,23 @@ fn tracer(world: &World, settings: &ResolvedSettings, found: &mut Vec<Diagnostic
 }
 
 impl Prepared {
+    fn picture(&self) -> Picture<'_> {
+        Picture { world: &self.world, view: &self.view, tracer: &*self.tracer, settings: &self.settings }
+    }
+
     /// Renders. Once `cancel` is true the film comes back as far as it is.
     pub fn render(&self, progress: &dyn Progress, cancel: &AtomicBool) -> Film {
-        let picture =
-            Picture { world: &self.world, view: &self.view, tracer: &*self.tracer, settings: &self.settings };
-        tiles::render(picture, progress, cancel)
+        tiles::render(self.picture(), progress, cancel)
+    }
+
+    /// A film on which nothing is yet.
+    pub fn bare_film(&self) -> Film {
+        Film::new(self.settings.size, self.settings.crop)
+    }
+
+    /// Renders onto a bare film that others may look at meanwhile: every tile that is finished is on it.
+    pub fn render_onto(&self, film: &Mutex<Film>, progress: &dyn Progress, cancel: &AtomicBool) {
+        tiles::render_onto(film, self.picture(), tiles::TILE, progress, cancel);
     }
 }
 

@@ -143,6 +143,29 @@ fn an_interrupted_picture_is_saved_as_far_as_it_is() {
     assert_eq!(folder.names(), ["ball.png", "ball.scene"]);
 }
 
+/// Each ray of this meets 3²⁵ spheres: none ever comes back.
+#[cfg(unix)]
+#[test]
+fn rays_without_end_are_interrupted_soon_and_leave_a_whole_picture() {
+    let text = "camera { eye <0, 0, 5>  look_at <0, 0, 0> }\nlight { sky 0.8 }\nvar g = sphere { }\n\
+                for i in 0..25 {\n  let h = g\n  \
+                g = group { h; h with { translate x / 1000 }; h with { translate y / 1000 } }\n}\ng\n";
+    for signal in ["-INT", "-TERM"] {
+        let folder = Folder::with(&[("endless.scene", text)]);
+        let mut child =
+            folder.command("render endless.scene --size 64x48").stderr(Stdio::piped()).spawn().unwrap();
+        std::thread::sleep(Duration::from_millis(700));
+        let pid = child.id().to_string();
+        assert!(std::process::Command::new("kill").args([signal, &pid]).status().unwrap().success());
+        let start = Instant::now();
+        let status = child.wait().unwrap();
+        assert!(start.elapsed() < Duration::from_secs(5), "{signal}: {:?}", start.elapsed());
+        assert_eq!(status.code(), Some(130), "{signal}");
+        assert_eq!(size_of(&folder.read("endless.png")), (64, 48));
+        assert_eq!(folder.names(), ["endless.png", "endless.scene"], "{signal}");
+    }
+}
+
 #[test]
 fn pictures_are_compared_against_a_threshold() {
     let folder = ball();

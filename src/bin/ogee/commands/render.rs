@@ -4,7 +4,7 @@ use super::stats::{self, Seconds};
 use crate::args::Render;
 use crate::interrupt;
 use crate::place::Place;
-use crate::speech::{Ended, Exit, Failure, data, show, tell};
+use crate::speech::{Ended, Exit, Failure, data, show, tell, tell_failure};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use ogee::diag::SourceMap;
 use ogee::render::film::Film;
@@ -17,6 +17,7 @@ use ogee::session::inspect::tracer_word;
 use ogee::session::picture::{self, Job, Prepared};
 use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex};
 use std::time::Instant;
 
 /// Renders to the file that is asked for. Whatever can be known to fail is said before the work begins.
@@ -27,10 +28,12 @@ pub fn run(args: &Render) -> Ended {
     let mut session = super::session(&args.evaluation);
     let mut seconds = Seconds::default();
     let Some(prepared) = prepare(args, &target, &mut session, &mut seconds)? else { return Ok(Exit::Scene) };
-    let film = seconds.render.measure(|| render(&prepared));
+    let saving = Arc::new(Saving::new(target, &prepared.settings, &session.sources));
+    let film = seconds.render.measure(|| render(&prepared, &saving));
     let faults = picture::faults(&film);
     show(&faults, &session.sources);
-    seconds.write.measure(|| target.save(&film, &prepared.settings, &session.sources))?;
+    seconds.write.measure(|| saving.save(&film))?;
+    let target = &saving.target;
     tell(stats::line(&target.shown(), &film, &prepared.settings, &seconds));
     if args.stats.is_some() {
         data(stats::json(&args.file, &target.shown(), &film, &prepared, &seconds))?;
@@ -80,11 +83,50 @@ fn job(args: &Render) -> Job {
     Job { overrides, camera: args.camera.clone(), crop: args.crop, threads: args.threads }
 }
 
-fn render(prepared: &Prepared) -> Film {
+fn render(prepared: &Prepared, saving: &Arc<Saving>) -> Film {
     let bar = Bar::new();
-    let film = interrupt::while_rendering(|| prepared.render(&bar, &interrupt::CANCEL));
+    let film = Arc::new(Mutex::new(prepared.bare_film()));
+    let rescue = {
+        let (film, saving) = (Arc::clone(&film), Arc::clone(saving));
+        move || saving.rescue(&film.lock().unwrap_or_else(|poisoned| poisoned.into_inner()))
+    };
+    interrupt::while_rendering(rescue, || prepared.render_onto(&film, &bar, &interrupt::CANCEL));
     bar.0.finish_and_clear();
-    film
+    let film = Arc::into_inner(film).expect("who would have saved it is gone");
+    film.into_inner().unwrap_or_else(|poisoned| poisoned.into_inner())
+}
+
+/// Where a picture goes, and how.
+struct Saving {
+    target: Target,
+    settings: ResolvedSettings,
+    about: Metadata,
+}
+
+impl Saving {
+    fn new(target: Target, settings: &ResolvedSettings, sources: &SourceMap) -> Self {
+        let about = match target.format {
+            Format::Exr => metadata(settings, sources),
+            Format::Png | Format::Jpeg | Format::Hdr => Metadata::default(),
+        };
+        Saving { target, settings: *settings, about }
+    }
+
+    fn save(&self, film: &Film) -> Result<(), Failure> {
+        let Saving { target, settings, about } = self;
+        let develop = Development { exposure: settings.exposure, tonemap: settings.tonemap };
+        let bytes = output::encode(film, target.format, &develop, about)
+            .map_err(|fault| Failure::machine(format!("cannot write {}", target.path.display()), fault))?;
+        target.place.write(&bytes)
+    }
+
+    /// Saves a picture whose rendering does not come to an end.
+    fn rescue(&self, film: &Film) {
+        match self.save(film) {
+            Ok(()) => tell(format!("{}  as far as it was: a ray does not come back", self.target.shown())),
+            Err(failure) => tell_failure(&failure),
+        }
+    }
 }
 
 /// A bar with the time left on a terminal; nothing anywhere else.
@@ -163,17 +205,6 @@ impl Target {
             return Err(Failure::usage("a JPEG has at most 65535 pixels a side; .png and .exr have more"));
         }
         Ok(())
-    }
-
-    fn save(&self, film: &Film, settings: &ResolvedSettings, sources: &SourceMap) -> Result<(), Failure> {
-        let develop = Development { exposure: settings.exposure, tonemap: settings.tonemap };
-        let about = match self.format {
-            Format::Exr => metadata(settings, sources),
-            Format::Png | Format::Jpeg | Format::Hdr => Metadata::default(),
-        };
-        let bytes = output::encode(film, self.format, &develop, &about)
-            .map_err(|fault| Failure::machine(format!("cannot write {}", self.path.display()), fault))?;
-        self.place.write(&bytes)
     }
 }
 
