@@ -84,6 +84,7 @@ codes! {
     ReturnOutside = "E0408", "`return` stands outside a function";
     ImportedRender = "W0409", "a camera or render block of an import is left out";
     NotSampled = "E0410", "a function cannot run while rendering";
+    PlacementLimit = "E0411", "groups in groups stand for too many shapes";
     // 5: files and assets
     FileNotFound = "E0501", "a file cannot be read";
     BadMesh = "E0502", "a mesh file cannot be used";

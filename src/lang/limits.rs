@@ -18,6 +18,8 @@ pub struct Limits {
     pub file: u64,
     /// How many bytes evaluation may allocate for values and objects, estimated (`memory`).
     pub memory: u64,
+    /// How many shapes an object may stand for, those of groups in groups counted each time they are placed (`placements`).
+    pub placements: u64,
 }
 
 impl Default for Limits {
@@ -29,13 +31,14 @@ impl Default for Limits {
             list: 50_000_000,
             file: 1 << 30,
             memory: 8 << 30,
+            placements: 1_000_000_000_000,
         }
     }
 }
 
 impl Limits {
     /// The names that `--limit` takes.
-    pub const NAMES: &[&str] = &["nesting", "calls", "turns", "list", "file", "memory"];
+    pub const NAMES: &[&str] = &["nesting", "calls", "turns", "list", "file", "memory", "placements"];
 
     /// Sets a guard by its name; false where none has it.
     pub fn set(&mut self, name: &str, value: u64) -> bool {
@@ -47,6 +50,7 @@ impl Limits {
             "list" => self.list = size,
             "file" => self.file = value,
             "memory" => self.memory = value,
+            "placements" => self.placements = value,
             _ => return false,
         }
         true

@@ -268,7 +268,7 @@ impl Dialogue<'_> {
         let marks = (state.known.mark(), state.files.mark());
         state.standing.begin();
         let Dialogue { options, loader, cancel, stack, .. } = *self;
-        let tracer = Tracer::new(loader);
+        let tracer = Tracer::new(loader, options.limits);
         let mut means = Means { sources: self.sources, options, loader, tracer, cancel, stack };
         let done = evaluate(state, &mut means, &mut sink);
         let interrupted = cancel.is_some_and(|asked| asked.load(Ordering::SeqCst));

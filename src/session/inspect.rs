@@ -85,7 +85,27 @@ fn entry_json(entry: &Entry, sources: &SourceMap) -> Json {
 
 fn entries(scene: &Scene) -> Vec<Entry> {
     let render = (scene.render != RenderSettings::default()).then(|| render(&scene.render));
-    scene.cameras.iter().map(camera).chain(render).chain(scene.nodes.iter().map(node)).collect()
+    let mut left = MOST_INSIDE;
+    let nodes = scene.nodes.iter().map(|top| node(top, &mut left));
+    scene.cameras.iter().map(camera).chain(render).chain(nodes).collect()
+}
+
+/// Entries inside groups that are printed at most: groups placed in groups in groups have no end that anybody reads.
+const MOST_INSIDE: usize = 1 << 20;
+
+/// The entries of what is inside, as long as any are left; then how many nodes are not told.
+fn inside(nodes: &[Node], left: &mut usize) -> Vec<Entry> {
+    let mut entries = Vec::new();
+    for (i, child) in nodes.iter().enumerate() {
+        let Some(fewer) = left.checked_sub(1) else {
+            let properties = vec![("nodes", json!(nodes.len() - i))];
+            entries.push(Entry { kind: "left-out", span: None, properties, children: vec![] });
+            break;
+        };
+        *left = fewer;
+        entries.push(node(child, left));
+    }
+    entries
 }
 
 fn camera(camera: &Camera) -> Entry {
@@ -137,14 +157,14 @@ fn render(settings: &RenderSettings) -> Entry {
     Entry { kind: "render", span: *span, properties, children: vec![] }
 }
 
-fn node(node: &Node) -> Entry {
+fn node(node: &Node, left: &mut usize) -> Entry {
     match node {
-        Node::Object(it) => object(it),
-        Node::Light(it) => light(it),
+        Node::Object(it) => object(it, left),
+        Node::Light(it) => light(it, left),
     }
 }
 
-fn light(light: &Light) -> Entry {
+fn light(light: &Light, left: &mut usize) -> Entry {
     let mut children = vec![];
     let mut properties = match &light.source {
         LightSource::Point { position, intensity } => {
@@ -160,7 +180,7 @@ fn light(light: &Light) -> Entry {
             vec![("sun", vector(*direction)), ("irradiance", vector(*irradiance))]
         }
         LightSource::Area { object: surface, radiance } => {
-            children.push(object(surface));
+            children.push(object(surface, left));
             vec![("area", json!(shape_word(&surface.shape))), ("radiance", vector(*radiance))]
         }
         LightSource::Sky(Sky::Uniform(radiance)) => vec![("sky", vector(*radiance))],
@@ -175,7 +195,7 @@ fn light(light: &Light) -> Entry {
     Entry { kind: "light", span: Some(light.span), properties, children }
 }
 
-fn object(object: &Object) -> Entry {
+fn object(object: &Object, left: &mut usize) -> Entry {
     let mut properties = vec![];
     properties.extend(object.name.as_ref().map(|name| ("name", quoted(name))));
     properties.extend(shape_properties(&object.shape));
@@ -190,7 +210,7 @@ fn object(object: &Object) -> Entry {
         let words: Vec<&str> = hidden.iter().filter(|(_, is)| *is).map(|(word, _)| *word).collect();
         properties.push(("hide", json!(words)));
     }
-    let children = object.shape.children().iter().map(node).collect();
+    let children = inside(object.shape.children(), left);
     Entry { kind: shape_word(&object.shape), span: Some(object.span), properties, children }
 }
 
@@ -450,5 +470,29 @@ fn tonemap_word(kind: ToneMap) -> &'static str {
         ToneMap::None => "none",
         ToneMap::Reinhard => "reinhard",
         ToneMap::Aces => "aces",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::diag::SourceId;
+    use std::sync::Arc;
+
+    fn count(entries: &[Entry]) -> usize {
+        entries.iter().map(|entry| 1 + count(&entry.children)).sum()
+    }
+
+    #[test]
+    fn what_is_placed_without_end_is_told_in_part() {
+        let span = Span::new(SourceId(0), 0, 0);
+        let placed = |shape| Node::Object(Arc::new(Object::new(shape, span)));
+        let mut all = placed(Shape::Sphere { center: DVec3::ZERO, radius: 1.0 });
+        for _ in 0..60 {
+            all = placed(Shape::Group(Arc::new([all.clone(), all])));
+        }
+        let told = inside(&[all], &mut 1000);
+        let left_out = count(&told) - 1000;
+        assert!((1..=60).contains(&left_out), "a line a level tells what is left out: {left_out}");
     }
 }

@@ -62,7 +62,8 @@ pub(super) fn evaluate(
 ) -> Outcome {
     on_deep_stack(&options.limits, |stack| {
         let mut sink = Sink::default();
-        let mut means = Means { sources, options, loader, tracer: Tracer::new(loader), cancel: None, stack };
+        let tracer = Tracer::new(loader, options.limits);
+        let mut means = Means { sources, options, loader, tracer, cancel: None, stack };
         let mut state = State::default();
         let Some(file) = state.read(&mut means, root, &mut sink) else { return empty(sink) };
         let set = settings(&mut means, &mut sink);

@@ -1,6 +1,7 @@
 //! What `trace` of the language asks: the true surfaces of objects, met by rays while a scene is evaluated.
 
 use crate::diag::{Code, Diagnostic, Severity, Span};
+use crate::lang::limits::{Limits, exceeded};
 use crate::lang::table::{Trace, Traced};
 use crate::scene::assets::{AssetCache, Loader};
 use crate::scene::{Node, Object};
@@ -14,9 +15,13 @@ use std::sync::Arc;
 /// No more objects than this are kept ready: a loop may trace a new one in each turn.
 const MOST_KEPT: usize = 64;
 
+/// What a hit takes on its way from the world into a list.
+const BYTES_A_HIT: u64 = 1 << 10;
+
 /// Objects made ready for rays, each once.
 pub(super) struct Tracer<'a> {
     assets: AssetCache<'a>,
+    limits: Limits,
     /// By address; the object is kept so that no other takes its place.
     ready: RefCell<HashMap<*const Object, (Arc<Object>, Ready)>>,
 }
@@ -25,8 +30,22 @@ pub(super) struct Tracer<'a> {
 type Ready = Rc<Result<World, Vec<Diagnostic>>>;
 
 impl<'a> Tracer<'a> {
-    pub fn new(loader: &'a dyn Loader) -> Self {
-        Tracer { assets: AssetCache::new(loader), ready: RefCell::default() }
+    pub fn new(loader: &'a dyn Loader, limits: Limits) -> Self {
+        Tracer { assets: AssetCache::new(loader), limits, ready: RefCell::default() }
+    }
+
+    /// Most hits of one ray, by the guards of lists and of memory.
+    fn most_hits(&self) -> usize {
+        self.limits.list.min(usize::try_from(self.limits.memory / BYTES_A_HIT).unwrap_or(usize::MAX))
+    }
+
+    fn too_many(&self, at: Span) -> Diagnostic {
+        let most = self.most_hits();
+        let message = format!("this ray meets the object more than {most} times");
+        match most < self.limits.list {
+            true => exceeded(Code::MemoryLimit, at, message, "memory", self.limits.memory),
+            false => exceeded(Code::ListLimit, at, message, "list", most as u64),
+        }
     }
 
     fn ready(&self, object: &Arc<Object>) -> Ready {
@@ -54,7 +73,10 @@ impl Trace for Tracer<'_> {
         at: Span,
     ) -> Result<Vec<Traced>, Vec<Diagnostic>> {
         match &*self.ready(object) {
-            Ok(world) => world.every_hit(origin, direction).iter().map(|hit| traced(hit, at)).collect(),
+            Ok(world) => {
+                let hits = world.every_hit(origin, direction, self.most_hits());
+                hits.ok_or_else(|| vec![self.too_many(at)])?.iter().map(|hit| traced(hit, at)).collect()
+            }
             Err(faults) => Err(faults.iter().map(|fault| fault.clone().also(at, "traced here")).collect()),
         }
     }

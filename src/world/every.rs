@@ -16,6 +16,18 @@ struct Local {
     instance: u64,
 }
 
+/// What was met, and how much may be.
+struct Found {
+    meetings: Vec<Candidate>,
+    most: usize,
+}
+
+impl Found {
+    fn is_over(&self) -> bool {
+        self.meetings.len() > self.most
+    }
+}
+
 impl Local {
     fn within(&self, transform: Option<&crate::math::Affine>) -> Option<Local> {
         let Some(transform) = transform else { return Some(*self) };
@@ -26,44 +38,53 @@ impl Local {
 
 impl World {
     /// Every hit of a ray with what is in the world, hidden or not, nearest first: from `origin` on along `direction`, which may have any
-    /// length but 0; the distances are in its lengths. A surface that is only touched is hit once.
-    pub fn every_hit(&self, origin: DVec3, direction: DVec3) -> Vec<Hit<'_>> {
-        let Some((ray, per_world)) = LocalRay::new(origin, direction) else { return Vec::new() };
-        let mut found = Vec::new();
+    /// length but 0; the distances are in its lengths. A surface that is only touched is hit once. None where there are more than `most`.
+    pub fn every_hit(&self, origin: DVec3, direction: DVec3, most: usize) -> Option<Vec<Hit<'_>>> {
+        let Some((ray, per_world)) = LocalRay::new(origin, direction) else { return Some(Vec::new()) };
+        let mut found = Found { meetings: Vec::new(), most };
         self.gather(&self.aggregates[0], Local { ray, per_world: 1.0, instance: 0 }, &mut found);
+        if found.is_over() {
+            return None;
+        }
+        let mut found = found.meetings;
         found.sort_by(|a, b| a.t.total_cmp(&b.t).then(a.id.cmp(&b.id)));
         let hits = found.iter().filter_map(|one| Some((one.id, self.finish(&ray, one.t / per_world, one)?)));
-        once_each(hits, direction)
+        Some(once_each(hits, direction))
     }
 
-    fn gather(&self, aggregate: &Aggregate, local: Local, found: &mut Vec<Candidate>) {
+    fn gather(&self, aggregate: &Aggregate, local: Local, found: &mut Found) {
         let Local { ray, .. } = local;
         match aggregate {
             Aggregate::Mesh(mesh) => {
                 let mut meets = Vec::new();
                 mesh.shape.crossings(&ray, &mut meets);
-                found.extend(meets.iter().map(|meet| {
+                found.meetings.extend(meets.iter().map(|meet| {
                     let id = PrimitiveId { instance: local.instance, shape: 0, part: meet.face };
                     candidate(id, 0, *meet, &local)
                 }));
             }
             Aggregate::Group(group) => {
                 group.tree.traverse(ray.origin, ray.direction, f64::MAX, |range, t_max| {
-                    range.for_each(|position| self.gather_item(group, position, &local, found));
+                    for position in range {
+                        self.gather_item(group, position, &local, found);
+                        if found.is_over() {
+                            return -1.0;
+                        }
+                    }
                     t_max
                 });
             }
         }
     }
 
-    fn gather_item(&self, group: &Group, position: usize, local: &Local, found: &mut Vec<Candidate>) {
+    fn gather_item(&self, group: &Group, position: usize, local: &Local, found: &mut Found) {
         match &group.items[position] {
             Item::Shape(shape, transform) => {
                 let Some(inside) = local.within(transform.as_deref()) else { return };
                 let mut meets = Vec::new();
                 shape.crossings(&inside.ray, &mut meets);
                 let number = group.number_of(position as u32);
-                found.extend(meets.iter().map(|meet| {
+                found.meetings.extend(meets.iter().map(|meet| {
                     let part = Csg::part_number(meet);
                     let id = PrimitiveId { instance: local.instance, shape: number, part };
                     candidate(id, position as u32, *meet, &inside)

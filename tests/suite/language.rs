@@ -224,6 +224,45 @@ fn groups_inside_groups_end_before_the_stack_does() {
     assert_eq!(codes(&evaluate(text).diagnostics), ["E0003"]);
 }
 
+/// Some levels of a block, each with what the last one made placed three times.
+fn levels(kind: &str, levels: u32) -> String {
+    format!("var g = sphere {{}}\nfor i in 0..{levels} {{ let h = g  g = {kind} {{ h; h; h }} }}\n")
+}
+
+#[test]
+fn placements_of_placements_are_counted_and_not_expanded() {
+    assert_eq!(codes(&evaluate(&(levels("group", 40) + "g")).diagnostics), ["E0411"]);
+    let endless = levels("group", 1000) + "g";
+    assert_eq!(codes(&evaluate(&endless).diagnostics), ["E0411"]);
+    assert_eq!(told(&evaluate(&(levels("group", 20) + "g"))), "");
+    let few = Limits { placements: 81, ..Limits::default() };
+    assert_eq!(told(&limited(&(levels("group", 4) + "g"), few)), "");
+    assert_eq!(codes(&limited(&(levels("group", 5) + "g"), few).diagnostics), ["E0411"]);
+    let whole = "let g = group { sphere {}  sphere {} }\nlet l = [g, g, g, g, g]\ngroup { l;  sphere {} }";
+    assert_eq!(told(&limited(whole, Limits { placements: 11, ..few })), "");
+    assert_eq!(codes(&limited(whole, Limits { placements: 10, ..few }).diagnostics), ["E0411"]);
+}
+
+#[test]
+fn solids_of_solids_are_refused_before_they_fill_the_memory() {
+    for kind in ["union", "intersection"] {
+        assert_eq!(codes(&evaluate(&(levels(kind, 20) + "g")).diagnostics), ["E0406"], "{kind}");
+    }
+    let text = levels("group", 20) + "union { g }";
+    assert_eq!(codes(&evaluate(&text).diagnostics), ["E0406"]);
+}
+
+#[test]
+fn a_ray_that_meets_placements_without_end_is_an_error() {
+    let text = levels("group", 20) + "let hits = trace(g, <0, 0, 5>, -z)";
+    let limits = Limits { list: 10_000, ..Limits::default() };
+    assert_eq!(codes(&limited(&text, limits).diagnostics), ["E0405"]);
+    let limits = Limits { memory: 10 << 20, ..Limits::default() };
+    assert_eq!(codes(&limited(&text, limits).diagnostics), ["E0406"]);
+    let few = levels("group", 4) + "assert(len(trace(g, <0, 0, 5>, -z)) == 162)";
+    assert_eq!(told(&evaluate(&few)), "");
+}
+
 #[test]
 fn a_raised_guard_of_calls_gets_a_stack_that_holds_them() {
     let limits = Limits { calls: 200_000, ..Limits::default() };
@@ -238,7 +277,8 @@ fn a_raised_guard_of_calls_gets_a_stack_that_holds_them() {
 
 #[test]
 fn each_guard_names_itself_and_its_flag() {
-    let limits = Limits { turns: 1000, list: 100, memory: 100_000, nesting: 20, ..Limits::default() };
+    let limits =
+        Limits { turns: 1000, list: 100, memory: 100_000, nesting: 20, placements: 50, ..Limits::default() };
     let cases = [
         ("while true {}", "E0404", "turns"),
         ("for i in 0..100000 {}", "E0404", "turns"),
@@ -255,6 +295,7 @@ fn each_guard_names_itself_and_its_flag() {
         ("var l = [1]\nfor i in 0..60 { l = [l, l] }\nprint(l)", "E0405", "list"),
         ("let l = linspace(0, 1, 500)", "E0405", "list"),
         ("for i in 0..900 { sphere {} }", "E0406", "memory"),
+        ("group { for i in 0..60 { sphere {} } }", "E0411", "placements"),
     ];
     for (text, code, name) in cases {
         let found = limited(text, limits).diagnostics;

@@ -118,7 +118,7 @@ pub struct Evaluation {
     /// `time` in the scene, 0 up to 1 over an animation
     #[arg(long, value_name = "T", value_parser = finite, allow_negative_numbers = true)]
     pub time: Option<f64>,
-    /// Raise a guard: `--limit calls=100000`; nesting, calls, turns, list, file, memory
+    /// Raise a guard: `--limit calls=100000`; nesting, calls, turns, list, file, memory, placements
     #[arg(long, value_name = "NAME=N", value_parser = limit)]
     pub limit: Vec<(LimitName, u64)>,
 }
@@ -405,6 +405,7 @@ pub enum LimitName {
     List,
     File,
     Memory,
+    Placements,
 }
 
 fn pair(text: &str) -> Result<(String, String), String> {

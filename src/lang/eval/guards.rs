@@ -6,7 +6,6 @@ use crate::lang::display;
 use crate::lang::limits::{Limits, exceeded};
 use crate::lang::table::{Context, Outcome, Reported};
 use crate::lang::value::{Value, memory};
-use crate::scene::{Node, Shape};
 use std::sync::atomic::Ordering;
 
 /// What is left of each guard.
@@ -21,9 +20,6 @@ pub(super) struct Guards {
     /// The address below which the stack may not grow.
     floor: usize,
 }
-
-/// Groups inside groups, at most: later stages follow them by recursion, on stacks that are not sized for it.
-const DEEPEST_GROUP: u32 = 1000;
 
 /// How often a run looks whether it is asked to end: some microseconds apart.
 const TURNS_BETWEEN_LOOKS: u64 = 1 << 10;
@@ -175,40 +171,6 @@ impl Evaluator<'_> {
         let pieces = display::pieces(value);
         self.reserve_list(pieces, span)?;
         self.turns(pieces, span)
-    }
-
-    /// Refuses groups nested beyond what every later stage can follow. `span` is the block's.
-    pub(super) fn check_nesting(&mut self, value: &Value, span: Span) -> Outcome<()> {
-        let Value::Object(object) = value else { return Ok(()) };
-        let children = match &object.shape {
-            Shape::Group(children) => children,
-            Shape::Csg(csg) => &csg.children,
-            _ => return Ok(()),
-        };
-        let depth = 1 + children.iter().map(|node| self.depth_of(node)).max().unwrap_or(0);
-        if depth > DEEPEST_GROUP {
-            let message = format!("groups are nested {depth} deep");
-            let said = Diagnostic::new(Code::TooDeep, span, message)
-                .label(format!("at most {DEEPEST_GROUP} are followed"))
-                .hint("place the objects beside one another instead of each inside the last");
-            return Err(self.fail(said));
-        }
-        if depth > 1 {
-            self.standing.depths.insert(children.as_ptr(), depth);
-        } else if !self.standing.depths.is_empty() {
-            self.standing.depths.remove(&children.as_ptr());
-        }
-        Ok(())
-    }
-
-    fn depth_of(&self, node: &Node) -> u32 {
-        let Node::Object(object) = node else { return 0 };
-        match &object.shape {
-            Shape::Group(_) | Shape::Csg(_) => {
-                self.standing.depths.get(&object.shape.children().as_ptr()).copied().unwrap_or(1)
-            }
-            _ => 0,
-        }
     }
 
     /// Counts the elements of a list that is about to be made, or to grow to this length.

@@ -12,6 +12,7 @@ mod expressions;
 mod fields;
 mod guards;
 mod items;
+mod nested;
 mod numbers;
 pub mod operators;
 mod report;
@@ -30,6 +31,7 @@ use crate::diag::{Sink, SourceId, Span};
 use crate::scene::assets::Loader;
 use crate::scene::{Camera, Node, RenderSettings, Scene};
 use guards::Guards;
+use nested::Nested;
 use slots::{Captured, Slot};
 use std::collections::HashMap;
 use std::rc::Rc;
@@ -64,8 +66,8 @@ pub struct Standing {
     /// Values of the top-level names of all units, by their global slots.
     pub globals: Vec<Slot>,
     units_done: Vec<bool>,
-    /// How deep groups of groups are nested, by the address of their children.
-    depths: HashMap<*const Node, u32>,
+    /// What groups of groups come to, by the address of their children.
+    nested: HashMap<*const Node, Nested>,
     undo: Option<Undo>,
 }
 

@@ -5,6 +5,7 @@ use crate::diag::Code;
 use crate::lang::table::{Block, Context, Kind, Outcome, Property, Role, Type};
 use crate::lang::value::{Given, Value};
 use crate::scene::{Csg, CsgOp, Implicit, Node, SampleInput, Shape, solid_fault};
+use std::collections::HashSet;
 use std::sync::Arc;
 
 const INVERSE: &[Property] =
@@ -123,6 +124,7 @@ fn build(ctx: &mut dyn Context, mut block: Block, op: CsgOp) -> Outcome {
 /// Reports all that are no solids, those inside groups too.
 pub fn check_solids(ctx: &mut dyn Context, nodes: &[Node]) -> Outcome<()> {
     let mut outcome = Ok(());
+    let mut seen = HashSet::new();
     let mut rest: Vec<&Node> = nodes.iter().rev().collect();
     while let Some(node) = rest.pop() {
         if let Some(fault) = solid_fault(node) {
@@ -130,6 +132,7 @@ pub fn check_solids(ctx: &mut dyn Context, nodes: &[Node]) -> Outcome<()> {
         }
         if let Node::Object(object) = node
             && let Shape::Group(nodes) = &object.shape
+            && seen.insert(nodes.as_ptr())
         {
             rest.extend(nodes.iter().rev());
         }

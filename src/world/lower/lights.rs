@@ -11,6 +11,9 @@ use std::sync::Arc;
 /// Lights and emitters beyond this number are left out, with an error: placements of placements multiply them without end.
 const MAX_LIGHTS: usize = 1 << 20;
 
+/// Placements of what gives light that are looked into at most: what glows without being sampled is never counted as a light.
+const MAX_VISITS: usize = 1 << 24;
+
 /// All lights in the order of the scene, and all emitters in the order of their ids.
 pub(super) fn gather(
     aggregates: &[Aggregate],
@@ -25,6 +28,7 @@ pub(super) fn gather(
         emissive,
         lights: vec![],
         emitters: vec![],
+        visits: 0,
     };
     let place =
         Place { transform: Affine::IDENTITY, instance: 0, material: super::DEFAULT_MATERIAL, light: None };
@@ -72,6 +76,7 @@ struct Gathering<'a> {
     luminous: Vec<bool>,
     lights: Vec<PlacedLight>,
     emitters: Vec<Emitter>,
+    visits: usize,
 }
 
 /// Where an aggregate is placed, and with what.
@@ -85,7 +90,7 @@ struct Place<'a> {
 
 impl Gathering<'_> {
     fn is_full(&self) -> bool {
-        self.lights.len() + self.emitters.len() >= MAX_LIGHTS
+        self.lights.len() + self.emitters.len() >= MAX_LIGHTS || self.visits >= MAX_VISITS
     }
 
     fn group(&mut self, group: &Group, place: &Place<'_>) {
@@ -98,7 +103,8 @@ impl Gathering<'_> {
                 return;
             }
             let material = if own == INHERITED { place.material } else { own };
-            let light = group.area_lights.iter().find(|(i, _)| *i == item as u32).map(|(_, light)| light);
+            let known = group.area_lights.binary_search_by_key(&(item as u32), |(i, _)| *i);
+            let light = known.ok().map(|at| &group.area_lights[at].1);
             match &group.items[item] {
                 Item::Shape(shape, transform) if self.emissive[material as usize] => {
                     let own_transform = transform.as_deref().copied().unwrap_or_default();
@@ -117,6 +123,7 @@ impl Gathering<'_> {
                     if !(self.luminous[instance.aggregate as usize] || self.emissive[material as usize]) {
                         continue;
                     }
+                    self.visits += 1;
                     match &self.aggregates[instance.aggregate as usize] {
                         Aggregate::Group(group) => self.group(group, &inside),
                         Aggregate::Mesh(mesh) => self.mesh(mesh, own != INHERITED, &inside),

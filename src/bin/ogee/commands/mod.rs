@@ -38,6 +38,7 @@ pub fn session(evaluation: &Evaluation) -> Session {
             LimitName::List => options.limits.list = count,
             LimitName::File => options.limits.file = value,
             LimitName::Memory => options.limits.memory = value,
+            LimitName::Placements => options.limits.placements = value,
         }
     }
     Session::new(options, Arc::new(DiskLoader))
