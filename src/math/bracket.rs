@@ -62,6 +62,61 @@ pub fn closest(a: (f64, f64), b: (f64, f64), tolerance: f64, mut f: impl FnMut(f
     one.0
 }
 
+/// Where a root may be, and how steep the function is there.
+#[derive(Clone, Copy, Debug)]
+pub struct Guess {
+    /// The place.
+    pub at: f64,
+    /// The slope, not 0.
+    pub slope: f64,
+    /// How far the slope may change over the bracket.
+    pub bend: f64,
+}
+
+/// The root of a monotone `f` between two places where its signs differ, to within `tolerance`: secants from a guess, halvings where those do not
+/// converge. The last step is not checked where the one before it says that it is exact. A NaN ends the search. Usually 3 to 5 evaluations.
+pub fn secant(lo: f64, hi: f64, guess: Guess, tolerance: f64, mut f: impl FnMut(f64) -> f64) -> f64 {
+    let (mut lo, mut hi, mut slope) = (lo, hi, guess.slope);
+    let mut x = if guess.at > lo && guess.at < hi { guess.at } else { middle(lo, hi) };
+    let mut last: Option<(f64, f64)> = None;
+    let (mut size, mut size_before) = (hi - lo, hi - lo);
+    let curvature = 2.0 * guess.bend / (hi - lo);
+    for _ in 0..MAX_STEPS {
+        let y = f(x);
+        if y == 0.0 || y.is_nan() {
+            return x;
+        }
+        if (y > 0.0) == (guess.slope > 0.0) {
+            hi = x
+        } else {
+            lo = x
+        }
+        // How far the slope may be off, as a share of it.
+        let mut doubt = 1.0;
+        if let Some((x0, y0)) = last {
+            let secant = (y - y0) / (x - x0);
+            if secant * guess.slope > 0.0 {
+                doubt = (secant - slope).abs().max(curvature * (x - x0).abs()) / secant.abs();
+                slope = secant;
+            }
+        }
+        let step = y / slope;
+        let next = x - step;
+        if step.abs() * doubt <= 0.5 * tolerance || hi - lo <= tolerance {
+            return next.clamp(lo, hi);
+        }
+        last = Some((x, y));
+        // A step must halve every second time; otherwise the bracket does it.
+        let converges = next > lo && next < hi && step.abs() <= 0.5 * size_before;
+        (size_before, size) = (size, step.abs());
+        x = if converges { next } else { middle(lo, hi) };
+        if !(x > lo && x < hi) {
+            return x;
+        }
+    }
+    x
+}
+
 /// Where between `one` and `two` to look next, as a share of the way.
 fn chandrupatla(one: (f64, f64), two: (f64, f64), three: (f64, f64)) -> f64 {
     let xi = (one.0 - two.0) / (three.0 - two.0);
@@ -143,6 +198,41 @@ mod tests {
         let (root, _) = counted(0.0, 1.0, &|x| if x < 0.3 { -1.0 } else { 1.0 });
         assert!((root - 0.3).abs() <= f64::EPSILON, "{root}");
         assert_eq!(counted(0.0, 1.0, &|x| x - 0.25).0, 0.25);
+    }
+
+    #[test]
+    fn secants_end_at_the_root_from_any_guess() {
+        type Case = (&'static str, fn(f64) -> f64, f64);
+        let functions: [Case; 4] = [
+            ("a square", |x| x * x - 2.0, 2f64.sqrt()),
+            ("a line", |x| 3.0 * x - 3.75, 1.25),
+            ("a kink", |x| if x < 1.1 { x - 1.1 } else { 40.0 * (x - 1.1) }, 1.1),
+            ("a cube", |x| (x - 1.3) * (x - 1.3) * (x - 1.3), 1.3),
+        ];
+        for (name, f, root) in functions {
+            for (at, slope) in [(1.41, 2.8), (1.0, 1.0), (9.0, 1e-3), (1.9, 1e6)] {
+                let mut n = 0;
+                let found = secant(1.0, 2.0, Guess { at, slope, bend: 40.0 }, f64::EPSILON, |x| {
+                    n += 1;
+                    f(x)
+                });
+                // Beside a triple root the values themselves are 0.
+                let (allowed, most) = if name == "a cube" { (1e-5, 100) } else { (4.0 * f64::EPSILON, 70) };
+                assert!(
+                    (found - root).abs() <= allowed && n <= most,
+                    "{name} from {at}, {slope}: {found} after {n}"
+                );
+                let reverse =
+                    secant(-2.0, -1.0, Guess { at: -at, slope: -slope, bend: 40.0 }, f64::EPSILON, |x| f(-x));
+                assert_eq!(reverse, -found, "{name} from {at}, {slope}");
+            }
+        }
+        let mut n = 0;
+        secant(1.0, 2.0, Guess { at: 1.41, slope: 2.8, bend: 2.0 }, f64::EPSILON, |x| {
+            n += 1;
+            x * x - 2.0
+        });
+        assert!(n <= 4, "{n}");
     }
 
     #[test]

@@ -7,12 +7,16 @@
 
 mod builder;
 mod enclose;
+mod linear;
+mod linearizer;
 mod rules;
 mod run;
 mod simplify;
 
 pub use builder::{FieldBuilder, Label, TableId, TooLarge};
 pub use enclose::{Choice, Enclosed, Encloser};
+pub use linear::Linear;
+pub use linearizer::Linearizer;
 pub use run::SMALL;
 
 use std::sync::Arc;
@@ -28,6 +32,7 @@ pub trait Held: std::fmt::Debug + Send + Sync {
 pub struct Register(pub u16);
 
 impl Register {
+    #[inline(always)]
     fn index(self) -> usize {
         self.0 as usize
     }

@@ -2,6 +2,10 @@
 //!
 //! Their values are part of the language: scenes rely on them, so no change here may change a bit (tests pin samples).
 
+mod slopes;
+
+pub use slopes::slopes;
+
 use glam::DVec3;
 
 /// The finaliser of SplitMix64 (Steele, Lea & Flood 2014, with Stafford's variant 13 constants): a bijection of 64 bits in

@@ -405,4 +405,4 @@ fn element<const N: usize>(index: Interval, len: usize, at: impl Fn(usize) -> En
 }
 
 #[cfg(test)]
-mod tests;
+pub(super) mod tests;

@@ -91,7 +91,7 @@ pub(super) fn call_n<const N: usize>(f: CallN, rule: Rule, from: &[Enclosed<N>],
             to[0] = Enclosed { value: clamped.value.with_partial(crossed), ..clamped };
         }
         Rule::Smoothstep => to[0] = smoothstep(&from[0], &from[1], &from[2]),
-        Rule::Noise => to[0] = noise_of(from, noise::steepest(from.len()), noise::noise),
+        Rule::Noise => to[0] = noise_of(from, noise_slopes(&values_of(from)[..from.len()]), noise::noise),
         Rule::Fbm => to[0] = fbm(f, from),
         _ => unknown(from, to, |from, to| {
             f(from, to);
@@ -314,24 +314,74 @@ fn smoothstep<const N: usize>(edge0: &Enclosed<N>, edge1: &Enclosed<N>, x: &Encl
     t.chain(value.intersect(Interval::new(0.0, 1.0)), slope.max(Interval::new(0.0, 0.0)))
 }
 
-/// A noise in 0 … 1 of which no partial derivative exceeds `steepest`.
-fn noise_of<const N: usize>(p: &[Enclosed<N>], steepest: f64, noise: impl Fn(&[f64]) -> f64) -> Enclosed<N> {
+/// What rounding may add to noise: of the offsets in a cell, of eight corners' sums.
+pub(super) const NOISE_ROUNDING: f64 = 64.0 * f64::EPSILON;
+
+/// A noise in 0 … 1 with these partial derivatives.
+fn noise_of<const N: usize>(
+    p: &[Enclosed<N>],
+    steep: [Interval; 3],
+    noise: impl Fn(&[f64]) -> f64,
+) -> Enclosed<N> {
     let mut middle = [0.0; MAX_CALL];
-    let mut reach = 0.0;
-    for (m, x) in middle.iter_mut().zip(p) {
-        *m = x.value.middle();
-        reach += (x.value.hi - *m).max(*m - x.value.lo);
+    let mut away = Interval::new(0.0, 0.0);
+    for (i, x) in p.iter().enumerate() {
+        middle[i] = x.value.middle();
+        away = away + steep[i] * (x.value - Interval::point(middle[i]));
     }
-    // Rounding: of the offsets in a cell, of eight corners' sums.
-    let doubt = reach * steepest + 64.0 * f64::EPSILON;
+    let doubt = NOISE_ROUNDING;
     let at = noise(&middle[..p.len()]);
     let partial = p.iter().any(|x| x.value.partial);
-    let around = Interval { lo: (at - doubt).next_down(), hi: (at + doubt).next_up(), partial };
-    let steep = Interval::new(-steepest, steepest);
-    let slope =
-        |i: usize| p.iter().fold(Interval::new(0.0, 0.0), |sum, x| plus(sum, times(x.slope[i], steep)));
+    let around =
+        Interval { lo: (at + away.lo - doubt).next_down(), hi: (at + away.hi + doubt).next_up(), partial };
+    let slope = |i: usize| {
+        p.iter().zip(&steep).fold(Interval::new(0.0, 0.0), |sum, (x, d)| plus(sum, times(x.slope[i], *d)))
+    };
     let value = if around.lo.is_nan() { Interval { partial, ..Interval::WHOLE } } else { around };
     Enclosed { value: value.intersect(Interval::new(0.0, 1.0)), slope: std::array::from_fn(slope) }
+}
+
+/// The partial derivatives of noise in 0 … 1 over a box.
+pub(super) fn noise_slopes(p: &[Interval]) -> [Interval; 3] {
+    octaves_slopes(p, std::iter::once((0.5, 1.0)))
+}
+
+/// The same of a mean of octaves, of which there are so many, each so much finer and weaker than the one before; none where these make no mean.
+pub(super) fn fbm_slopes(p: &[Interval], [octaves, lacunarity, gain]: [f64; 3]) -> Option<[Interval; 3]> {
+    let weighed = || {
+        std::iter::successors(Some((1.0, 1.0)), |(w, f)| Some((w * gain, f * lacunarity)))
+            .take(octaves as usize)
+    };
+    let weights: f64 = weighed().map(|(weight, _)| weight).sum();
+    // Half of the mean; the weights' own roundings are far less than the share.
+    let share = Interval::new(0.5 / weights * (1.0 - SUMS), 0.5 / weights * (1.0 + SUMS));
+    let slopes = octaves_slopes(p, weighed()).map(|d| d * share);
+    let is_known = gain >= 0.0 && slopes.iter().all(|d| d.lo.is_finite() && d.hi.is_finite());
+    is_known.then_some(slopes)
+}
+
+/// Rounding of weights and of their sum: of at most some hundred numbers.
+const SUMS: f64 = 512.0 * f64::EPSILON;
+
+/// The partial derivatives of a sum of octaves of gradient noise, each with its weight and frequency, over a box.
+fn octaves_slopes(p: &[Interval], octaves: impl Iterator<Item = (f64, f64)>) -> [Interval; 3] {
+    let mut sum = [Interval::new(0.0, 0.0); 3];
+    for ((weight, frequency), seed) in octaves.zip(0..) {
+        let mut q = [Interval::new(0.0, 0.0); 3];
+        for (q, x) in q.iter_mut().zip(p) {
+            *q = *x * Interval::point(frequency);
+        }
+        let factor = Interval::point(weight) * Interval::point(frequency);
+        let here = noise::slopes(&q[..p.len()], seed);
+        sum = std::array::from_fn(|i| sum[i] + here[i] * factor);
+    }
+    sum
+}
+
+fn values_of<const N: usize>(p: &[Enclosed<N>]) -> [Interval; 3] {
+    let mut values = [Interval::new(0.0, 0.0); 3];
+    values.iter_mut().zip(p).for_each(|(value, x)| *value = x.value);
+    values
 }
 
 fn fbm<const N: usize>(f: CallN, from: &[Enclosed<N>]) -> Enclosed<N> {
@@ -339,26 +389,18 @@ fn fbm<const N: usize>(f: CallN, from: &[Enclosed<N>]) -> Enclosed<N> {
     if rest.iter().any(|r| r.value.lo != r.value.hi) {
         return Enclosed::ANYTHING;
     }
-    let [octaves, lacunarity, gain] = [0, 1, 2].map(|i| rest[i].value.lo);
-    let (mut steep, mut weights, mut weight, mut frequency) = (0.0, 0.0, 1.0, 1.0);
-    for _ in 0..octaves as u32 {
-        steep += weight * frequency;
-        weights += weight;
-        weight *= gain.abs();
-        frequency *= lacunarity.abs();
-    }
-    let steepest = noise::steepest(p.len()) * steep / weights * (1.0 + 64.0 * f64::EPSILON);
-    if gain < 0.0 || !steepest.is_finite() {
+    let parameters = [0, 1, 2].map(|i| rest[i].value.lo);
+    let Some(slopes) = fbm_slopes(&values_of(p)[..p.len()], parameters) else {
         return opaque(from, |at| {
             let mut to = [0.0];
             f(at, &mut to);
             to[0]
         });
-    }
-    noise_of(p, steepest, |p| {
+    };
+    noise_of(p, slopes, |p| {
         let mut arguments = [0.0; MAX_CALL];
         arguments[..p.len()].copy_from_slice(p);
-        arguments[p.len()..p.len() + 3].copy_from_slice(&[octaves, lacunarity, gain]);
+        arguments[p.len()..p.len() + 3].copy_from_slice(&parameters);
         let mut to = [0.0];
         f(&arguments[..p.len() + 3], &mut to);
         to[0]

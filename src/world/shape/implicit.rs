@@ -7,6 +7,8 @@
 //! pixel can say so; neither is ever taken for empty space.
 
 mod cells;
+mod grow;
+mod plane;
 mod search;
 #[cfg(test)]
 mod tests;
@@ -16,12 +18,14 @@ use super::{LocalRay, Meet, Surface, perpendicular};
 use crate::math::Aabb;
 use crate::math::elementary::{atan2, cbrt};
 use crate::math::error::gamma;
-use crate::math::field::{Enclosed, Encloser, FaultKind};
+use crate::math::field::{Enclosed, Encloser, FaultKind, Field, Linear, Linearizer};
 use crate::math::interval::Interval;
 use crate::scene::SampledFunction;
 use crate::world::texture::TextureFault;
 use cells::Cells;
 use glam::{DVec2, DVec3};
+pub use search::{Event, Window};
+use std::cell::Cell;
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 
@@ -33,6 +37,9 @@ const FIRST_CUT: u32 = 1;
 pub(super) const UNDEFINED: u32 = 7;
 /// The search gave up there.
 const UNRESOLVED: u32 = 8;
+
+/// A ray that starts farther from the middle than this many sizes of the box is first moved near it.
+const FAR: f64 = 4.0;
 
 /// An implicit surface.
 #[derive(Clone, Debug)]
@@ -48,23 +55,43 @@ impl Implicit {
     /// Of a function of the point with one output, in a box with extent. Finds the parts of the box that may hold the surface.
     pub fn new(function: Arc<SampledFunction>, min: DVec3, max: DVec3, steepest: Option<f64>) -> Implicit {
         let within = Cuboid { min, max };
-        let cells = Cells::new(&function.field, Aabb { min, max });
+        let cells = grow::grow(&function.field, Aabb { min, max });
         Implicit { function, within, steepest, cells }
     }
 
     /// f at a point of the box; NaN where it is undefined.
     fn value(&self, p: DVec3) -> f64 {
-        let mut value = [f64::NAN];
-        match self.function.field.eval(&p.to_array(), &mut value) {
-            Ok(()) => value[0],
-            Err(_) => f64::NAN,
+        value(&self.function.field, p)
+    }
+
+    /// Whether f is surely not 0 at a point, rounding included.
+    fn is_clear(&self, p: DVec3) -> bool {
+        let field = &self.function.field;
+        let form = Linearizer::reuse(field, SPARE_POINT.take());
+        let (form, memory) = form.once(&p.to_array().map(Linear::constant));
+        SPARE_POINT.set(memory);
+        match form {
+            Some(form) => form.sign().is_some(),
+            None => !Encloser::new(field).run(&p.to_array().map(Enclosed::<0>::constant)).value.contains(0.0),
         }
     }
 
-    /// All that f can be at one point, rounding included.
-    fn value_around(&self, p: DVec3) -> Interval {
-        let inputs = p.to_array().map(Enclosed::<0>::constant);
-        Encloser::new(&self.function.field).run(&inputs).value
+    /// f near a point as a linear function of so small steps that its slope there is the gradient, with bounds on their rounding; none where
+    /// it is not known.
+    fn tangent(&self, p: DVec3) -> Option<Tangent> {
+        let step = STEP * self.bounds().size().max_element();
+        let inputs = std::array::from_fn::<_, 3, _>(|i| {
+            let mut x = Linear::constant(p[i]);
+            x.slope[i] = step;
+            x
+        });
+        let (form, memory) = Linearizer::reuse(&self.function.field, SPARE_TANGENT.take()).once(&inputs);
+        SPARE_TANGENT.set(memory);
+        let form = form?;
+        let gradient = DVec3::from_array(form.slope) / step;
+        let off = DVec3::from_array(form.bend) / step;
+        let is_known = off.max_element() <= gradient.abs().max_element() * LEAST_KNOWN;
+        is_known.then_some(Tangent { gradient, off: form.middle.abs() + form.rest })
     }
 
     /// Where the scene's promise about the gradient is broken, and what it is there: looked for at the middles of all cells.
@@ -76,28 +103,41 @@ impl Implicit {
 
     pub(super) fn meet(&self, ray: &LocalRay, limit: f64) -> Option<Meet> {
         let mut first = None;
-        search::each_meeting(self, ray, limit, |meet| {
-            first = Some(meet);
-            false
+        search::each_event(self, ray, Window { from: 0.0, to: limit }, |event| match event {
+            Event::Start(_) => true,
+            Event::Meet(meet) => {
+                first = Some(meet);
+                false
+            }
         });
-        first.filter(|meet| meet.t <= limit)
+        first
     }
 
     pub(super) fn crossings(&self, ray: &LocalRay, out: &mut Vec<Meet>) {
-        self.each_crossing(ray, f64::MAX, |meet| {
-            out.push(meet);
+        self.each_crossing(ray, Window::AHEAD, |event| {
+            if let Event::Meet(meet) = event {
+                out.push(meet);
+            }
             true
         });
     }
 
-    /// Calls `found` with each crossing in order until it says false; those beyond the limit may be left out.
-    pub(super) fn each_crossing(&self, ray: &LocalRay, limit: f64, mut found: impl FnMut(Meet) -> bool) {
-        // Meetings of other kinds do not turn inside to outside: they stand twice.
-        search::each_meeting(self, ray, limit, |meet| found(meet) && (meet.face < UNDEFINED || found(meet)));
+    /// Calls `found` with whether a part of a ray begins inside, and then with each crossing in it in order, until it says false.
+    pub(super) fn each_crossing(&self, ray: &LocalRay, window: Window, mut found: impl FnMut(Event) -> bool) {
+        search::each_event(self, ray, window, |event| match event {
+            // Meetings of other kinds do not turn inside to outside: they stand twice.
+            Event::Meet(meet) if meet.face >= UNDEFINED => found(event) && found(event),
+            Event::Meet(_) | Event::Start(_) => found(event),
+        });
     }
 
     pub(super) fn starts_inside(&self, ray: &LocalRay) -> bool {
-        search::starts_inside(self, ray)
+        let mut inside = false;
+        search::each_event(self, ray, Window::AHEAD, |event| {
+            inside = matches!(event, Event::Start(true));
+            false
+        });
+        inside
     }
 
     /// Why there is no surface at a meeting, where there is none.
@@ -125,8 +165,13 @@ impl Implicit {
         if meet.face >= UNDEFINED {
             return self.marked(point, -ray.direction.normalize(), rounding);
         }
-        let normal = self.normal(point, ray, rounding);
-        self.marked(point, normal, self.clearance(point, normal, rounding))
+        let tangent = self.tangent(point);
+        let (normal, first) = match tangent.and_then(|t| t.gradient.try_normalize().map(|n| (n, t))) {
+            // What f is off by here, and about as much there.
+            Some((normal, t)) => (normal, rounding.max(1.25 * t.off / t.gradient.length())),
+            None => (self.normal(point, ray, rounding), rounding),
+        };
+        self.marked(point, normal, self.clearance(point, normal, rounding, first))
     }
 
     fn marked(&self, point: DVec3, normal: DVec3, error: f64) -> Surface {
@@ -142,13 +187,12 @@ impl Implicit {
         }
     }
 
-    /// How far from a point, along the normal either way, f is surely not 0: rounding included. Doubled until it is, up to a share of
-    /// the coordinates at which nothing is left to see.
-    fn clearance(&self, point: DVec3, normal: DVec3, rounding: f64) -> f64 {
+    /// How far from a point, along the normal either way, f is surely not 0: rounding included. From a first guess doubled until it is, up to a
+    /// share of the coordinates at which nothing is left to see.
+    fn clearance(&self, point: DVec3, normal: DVec3, rounding: f64, first: f64) -> f64 {
         let most = rounding * (1u64 << 30) as f64;
-        let mut away = rounding.max(f64::MIN_POSITIVE);
-        let is_clear = |p: DVec3| !self.value_around(p).contains(0.0);
-        while away < most && !(is_clear(point + normal * away) && is_clear(point - normal * away)) {
+        let mut away = first.clamp(f64::MIN_POSITIVE, most.max(f64::MIN_POSITIVE));
+        while away < most && !(self.is_clear(point + normal * away) && self.is_clear(point - normal * away)) {
             away *= 2.0;
         }
         // A ray that starts there is rounded as well.
@@ -171,6 +215,9 @@ impl Implicit {
 
     /// ∇f by exact rules where these know it, else by central differences.
     fn gradient(&self, p: DVec3) -> DVec3 {
+        if let Some(tangent) = self.tangent(p) {
+            return tangent.gradient;
+        }
         let inputs = directions(p.to_array().map(Interval::point), [DVec3::X, DVec3::Y, DVec3::Z]);
         let slope = Encloser::new(&self.function.field).run(&inputs).slope;
         let known = slope.iter().all(|s| s.width() <= s.middle().abs() / 1024.0 + f64::MIN_POSITIVE * 64.0);
@@ -186,6 +233,34 @@ impl Implicit {
 
     pub(super) fn bounds(&self) -> Aabb {
         Aabb { min: self.within.min, max: self.within.max }
+    }
+}
+
+/// f near a point.
+#[derive(Clone, Copy, Debug)]
+struct Tangent {
+    gradient: DVec3,
+    /// How far f may be from 0 at the point, rounding included.
+    off: f64,
+}
+
+/// The steps of a tangent, as a share of the box: no second derivative is felt over them, and their squares do not underflow.
+const STEP: f64 = 1.0 / (1u64 << 60) as f64;
+/// A gradient that may be off by more than this is not known.
+const LEAST_KNOWN: f64 = 1.0 / (1 << 20) as f64;
+
+thread_local! {
+    /// Kept between surfaces so that none allocates.
+    static SPARE_POINT: Cell<Vec<Linear<0>>> = const { Cell::new(Vec::new()) };
+    static SPARE_TANGENT: Cell<Vec<Linear<3>>> = const { Cell::new(Vec::new()) };
+}
+
+/// A tape's value at a point; NaN where it is undefined.
+fn value(field: &Field, p: DVec3) -> f64 {
+    let mut value = [f64::NAN];
+    match field.eval(&p.to_array(), &mut value) {
+        Ok(()) => value[0],
+        Err(_) => f64::NAN,
     }
 }
 

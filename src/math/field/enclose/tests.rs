@@ -6,10 +6,10 @@ use crate::math::field::{FieldBuilder, Rule};
 use crate::math::noise;
 
 /// Numbers in −1 … 1.
-struct Random(u64);
+pub(in crate::math::field) struct Random(pub u64);
 
 impl Random {
-    fn next(&mut self) -> f64 {
+    pub fn next(&mut self) -> f64 {
         self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
         (self.0 >> 11) as f64 / (1u64 << 52) as f64 - 1.0
     }
@@ -73,7 +73,7 @@ fn floored(a: f64, b: f64) -> f64 {
 }
 
 /// Tapes by name, each with the box that its inputs come from: middle and reach.
-fn tapes() -> Vec<(&'static str, Field, f64, f64)> {
+pub(in crate::math::field) fn tapes() -> Vec<(&'static str, Field, f64, f64)> {
     let fbm: crate::math::field::CallN = |of, to| to[0] = 0.5 + 0.5 * noise::fbm(&of[..3], 4, 2.0, 0.5);
     let mut b = FieldBuilder::new(3);
     let inputs: Vec<Register> = (0..3).map(|i| b.input(i)).collect();

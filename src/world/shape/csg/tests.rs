@@ -137,12 +137,17 @@ fn nested_solids_are_what_each_point_says() {
         let ring = p.z.abs() < 0.5 && (0.5..1.0).contains(&across);
         (ring || p.length() < 0.4) && p.x * 0.6 + p.z * 0.8 < 0.1
     };
+    assert_is_what_points_say(&whole, inside, 20_000);
+}
+
+/// Rays from everywhere are inside the whole exactly where its points are said to be.
+fn assert_is_what_points_say(whole: &Csg, inside: impl Fn(DVec3) -> bool, cases: usize) {
     let mut state = 1u64;
     let mut next = || {
         state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
         (state >> 11) as f64 / (1u64 << 52) as f64 - 1.0
     };
-    for case in 0..20_000 {
+    for case in 0..cases {
         let origin = DVec3::new(next(), next(), next()) * 1.5;
         let ray = ray(origin, DVec3::new(next(), next(), next()));
         let mut all = vec![];
@@ -162,6 +167,43 @@ fn nested_solids_are_what_each_point_says() {
             (within, before) = (!within, meet.t);
         }
     }
+}
+
+/// |p|² − radius² as a function, in a box that does not cut it.
+fn formula(radius: f64) -> Part {
+    use crate::math::field::{Binary, FieldBuilder};
+    let mut b = FieldBuilder::new(3);
+    let squares: Vec<_> = (0..3).map(|i| b.binary(Binary::Mul, b.input(i), b.input(i))).collect();
+    let sum = squares.into_iter().reduce(|x, y| b.binary(Binary::Add, x, y)).expect("three");
+    let square = b.constant(radius * radius);
+    let result = b.binary(Binary::Sub, sum, square);
+    let field = b.finish(&[result]).expect("small");
+    let function =
+        scene::SampledFunction { field, input: scene::SampleInput::Point, span: SPAN, sites: vec![] };
+    let half = DVec3::splat(1.25 * radius);
+    let implicit = crate::world::shape::Implicit::new(Arc::new(function), -half, half, None);
+    placed(Shape::Implicit(Arc::new(implicit)), None)
+}
+
+/// A formula is followed only where it matters: before, after and between the others' faces, and from inside of any of them.
+#[test]
+fn a_formula_is_met_whatever_it_is_put_together_with() {
+    let corner = || block(DVec3::splat(0.1), DVec3::splat(1.2));
+    let bar = || block(DVec3::new(-1.4, -0.2, -0.3), DVec3::new(1.4, 0.3, 0.2));
+    let in_corner = |p: DVec3| p.min_element() > 0.1 && p.max_element() < 1.2;
+    let in_bar = |p: DVec3| p.x.abs() < 1.4 && p.y > -0.2 && p.y < 0.3 && p.z > -0.3 && p.z < 0.2;
+    let in_ball = |p: DVec3| p.length() < 0.9;
+    let bitten = Csg::new(Difference, false, vec![formula(0.9), corner()]);
+    assert_is_what_points_say(&bitten, |p| in_ball(p) && !in_corner(p), 4000);
+    let hollow = Csg::new(Difference, false, vec![corner(), formula(0.9)]);
+    assert_is_what_points_say(&hollow, |p| in_corner(p) && !in_ball(p), 4000);
+    let both = Csg::new(Intersection, false, vec![bar(), formula(0.9)]);
+    assert_is_what_points_say(&both, |p| in_bar(p) && in_ball(p), 4000);
+    let joined = Csg::new(Union, false, vec![bar(), formula(0.9)]);
+    assert_is_what_points_say(&joined, |p| in_bar(p) || in_ball(p), 4000);
+    let parts = vec![Part::Whole(Difference, true, vec![formula(0.9), bar()]), corner()];
+    let turned = Csg::new(Intersection, false, parts);
+    assert_is_what_points_say(&turned, |p| !(in_ball(p) && !in_bar(p)) && in_corner(p), 4000);
 }
 
 #[test]

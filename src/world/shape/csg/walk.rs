@@ -2,6 +2,7 @@
 
 use super::{COINCIDENT, Csg, Solid, Tally, doubt, reach};
 use crate::world::bvh::clip;
+use crate::world::shape::implicit::{Event, Window};
 use crate::world::shape::{LocalRay, Meet, Shape, Surface};
 use std::cell::Cell;
 
@@ -18,8 +19,10 @@ struct Walk {
     inside: Vec<bool>,
     /// Meetings at one place, not passed yet.
     together: Vec<Meet>,
-    /// A part that is expensive to follow: it is met as the walk goes on, and no farther than it goes.
+    /// A part that is expensive to follow: it is met as the walk goes on, only where it matters, and no farther than the walk goes.
     slow: Option<u32>,
+    /// Where it matters.
+    windows: Vec<Window>,
 }
 
 impl Walk {
@@ -29,6 +32,7 @@ impl Walk {
         inside: Vec::new(),
         together: Vec::new(),
         slow: None,
+        windows: Vec::new(),
     };
 }
 
@@ -64,6 +68,16 @@ impl<F: FnMut(&Turn<'_>) -> bool> Steps<'_, F> {
         self.stopped |= self.walk.together.is_empty() && meet.t > self.limit;
         if !self.stopped {
             self.walk.together.push(meet);
+        }
+        !self.stopped
+    }
+
+    /// A slow part begins to matter, inside or not. What came before did not depend on it; false once nothing more is wanted.
+    fn start(&mut self, number: u32, inside: bool) -> bool {
+        self.pass();
+        let Walk { tallies, inside: all, .. } = &mut *self.walk;
+        if all[number as usize] != inside {
+            self.csg.turn(number, tallies, all);
         }
         !self.stopped
     }
@@ -104,6 +118,16 @@ impl Csg {
     pub fn starts_inside(&self, ray: &LocalRay) -> bool {
         let mut walk = SPARE.take();
         self.gather(ray, &mut walk);
+        if let Some(number) = walk.slow
+            && self.matters(number, &mut walk)
+        {
+            self.each_of_slow(number, ray, Window { from: 0.0, to: 0.0 }, |event| {
+                if let Event::Start(true) = event {
+                    self.turn(number, &mut walk.tallies, &mut walk.inside);
+                }
+                false
+            });
+        }
         let inside = self.operations[0].holds(walk.tallies[0]);
         SPARE.set(walk);
         inside
@@ -132,21 +156,32 @@ impl Csg {
     fn each_turn(&self, ray: &LocalRay, limit: f64, found: impl FnMut(&Turn<'_>) -> bool) {
         let mut walk = SPARE.take();
         self.gather(ray, &mut walk);
+        let slow = walk.slow.inspect(|number| self.find_windows(*number, ray, limit, &mut walk));
         let meetings = std::mem::take(&mut walk.meetings);
-        let slow = walk.slow;
+        let windows = std::mem::take(&mut walk.windows);
         let mut steps = Steps { csg: self, ray, limit, walk: &mut walk, found, stopped: false };
         let mut rest = 0;
-        if let Some(number) = slow {
-            self.each_of_slow(number, ray, limit, |meet| {
-                let before = |other: &Meet| other.t < meet.t || (other.t == meet.t && other.part < number);
+        for (number, window) in slow.into_iter().flat_map(|number| windows.iter().map(move |w| (number, w))) {
+            self.each_of_slow(number, ray, *window, |event| {
+                let (from, meet) = match event {
+                    Event::Start(inside) => (window.from, Err(inside)),
+                    Event::Meet(meet) => (meet.t, Ok(meet)),
+                };
+                let before = |other: &Meet| other.t < from || (other.t == from && other.part < number);
                 while let Some(other) = meetings.get(rest).filter(|other| before(other)) {
                     rest += 1;
                     if !steps.meet(*other) {
                         return false;
                     }
                 }
-                steps.meet(meet)
+                match meet {
+                    Ok(meet) => steps.meet(meet),
+                    Err(inside) => steps.start(number, inside),
+                }
             });
+            if steps.stopped {
+                break;
+            }
         }
         while !steps.stopped && rest < meetings.len() && steps.meet(meetings[rest]) {
             rest += 1;
@@ -154,19 +189,71 @@ impl Csg {
         if !steps.stopped {
             steps.pass();
         }
-        walk.meetings = meetings;
+        (walk.meetings, walk.windows) = (meetings, windows);
         SPARE.set(walk);
     }
 
-    fn each_of_slow(&self, number: u32, ray: &LocalRay, limit: f64, mut found: impl FnMut(Meet) -> bool) {
+    /// Follows a slow part through a window, until `found` says false.
+    fn each_of_slow(
+        &self,
+        number: u32,
+        ray: &LocalRay,
+        window: Window,
+        mut found: impl FnMut(Event) -> bool,
+    ) {
         let part = &self.parts[number as usize];
         let (Solid::Shape(Shape::Implicit(implicit)), Some((local, factor))) = (&part.solid, part.local(ray))
         else {
             return;
         };
-        implicit.each_crossing(&local, limit * factor, |meet| {
-            found(Meet { t: meet.t / factor, part: number, ..meet })
+        let own = Window { from: window.from * factor, to: window.to * factor };
+        implicit.each_crossing(&local, own, |event| match event {
+            Event::Start(_) => found(event),
+            Event::Meet(meet) => found(Event::Meet(Meet { t: meet.t / factor, part: number, ..meet })),
         });
+    }
+
+    /// Whether the whole changes where a part is turned.
+    fn matters(&self, number: u32, walk: &mut Walk) -> bool {
+        let before = self.operations[0].holds(walk.tallies[0]);
+        self.turn(number, &mut walk.tallies, &mut walk.inside);
+        let after = self.operations[0].holds(walk.tallies[0]);
+        self.turn(number, &mut walk.tallies, &mut walk.inside);
+        before != after
+    }
+
+    /// The windows in which a slow part matters, by the meetings of the others: each reaches so far out that what coincides with a meeting at
+    /// its end is in it.
+    fn find_windows(&self, number: u32, ray: &LocalRay, limit: f64, walk: &mut Walk) {
+        walk.windows.clear();
+        let meetings = std::mem::take(&mut walk.meetings);
+        let (mut from, mut is_after_all) = (0.0, false);
+        let mut rest = meetings.iter();
+        while !is_after_all && from <= limit {
+            let next = rest.next();
+            let to = next.map_or(f64::MAX, |meet| meet.t);
+            is_after_all = next.is_none();
+            if self.matters(number, walk) {
+                let window = Window {
+                    from: (from - APART * reach(ray, from)).max(0.0),
+                    to: (to + APART * reach(ray, to)).min(limit + APART * reach(ray, limit)),
+                };
+                match walk.windows.last_mut() {
+                    Some(last) if window.from <= last.to => last.to = window.to,
+                    _ => walk.windows.push(window),
+                }
+            }
+            if let Some(meet) = next {
+                self.turn(meet.part, &mut walk.tallies, &mut walk.inside);
+                from = to;
+            }
+        }
+        // Back to where the ray starts.
+        let n_turned = meetings.len() - rest.len();
+        for meet in &meetings[..n_turned] {
+            self.turn(meet.part, &mut walk.tallies, &mut walk.inside);
+        }
+        walk.meetings = meetings;
     }
 
     /// Collects the meetings with all parts, and where the ray starts.
@@ -197,11 +284,8 @@ impl Csg {
     fn gather_part(&self, number: u32, ray: &LocalRay, walk: &mut Walk) {
         let part = &self.parts[number as usize];
         let Some((local, factor)) = part.local(ray) else { return };
-        if let (Solid::Shape(Shape::Implicit(implicit)), None) = (&part.solid, walk.slow) {
+        if let (Solid::Shape(Shape::Implicit(_)), None) = (&part.solid, walk.slow) {
             walk.slow = Some(number);
-            if implicit.starts_inside(&local) {
-                self.turn(number, &mut walk.tallies, &mut walk.inside);
-            }
             return;
         }
         let first = walk.meetings.len();

@@ -3,29 +3,23 @@
 //! The sign of f at the ends of pieces, in plain arithmetic, decides how many zeros there are; the same place always has the
 //! same sign, so that inside and outside never disagree. Intervals decide which pieces need no look, and which hold one zero.
 
-use super::{FIRST_CUT, Implicit, ON_SURFACE, UNDEFINED, UNRESOLVED, directions};
+mod halve;
+
+use super::cells::{Leaf, Visited};
+use super::plane::{Along, Part, Zeros};
+use super::{FAR, FIRST_CUT, Implicit, ON_SURFACE, UNDEFINED};
 use crate::math::bracket;
-use crate::math::field::{Enclosed, Encloser};
-use crate::math::interval::Interval;
+use crate::math::field::{Enclosed, Field, Linear};
 use crate::world::shape::{LocalRay, Meet, ahead};
 use glam::DVec3;
 use std::cell::Cell;
-
-/// A ray that starts farther from the middle than this many sizes of the box is first moved near it.
-const FAR: f64 = 4.0;
-
-/// Pieces are not split below this many steps of the floating-point grid.
-const LEAST_STEPS: f64 = 4.0;
-
-/// Below this share of the coordinates rounding is asked whether splitting still tells anything.
-const SMALL: f64 = 1.0 / (1 << 20) as f64;
 
 /// How often f may be bounded along one ray before the search gives up: fifty times what the hardest double zeros of the tests take.
 const MOST_EVALUATIONS: u32 = 20_000;
 
 thread_local! {
     /// Kept between rays so that a search does not allocate.
-    static SPARE: Cell<Spare> = const { Cell::new(Spare { along: Vec::new(), at: Vec::new(), pieces: Vec::new() }) };
+    static SPARE: Cell<Spare> = const { Cell::new(Spare { along: Vec::new(), at: Vec::new(), forms: Vec::new(), pieces: Vec::new() }) };
     /// How often functions were bounded or evaluated by this thread, for tests and figures.
     #[cfg(test)]
     pub(super) static EVALUATIONS: Cell<u64> = const { Cell::new(0) };
@@ -35,7 +29,31 @@ thread_local! {
 struct Spare {
     along: Vec<Enclosed<1>>,
     at: Vec<Enclosed<0>>,
+    forms: Vec<Linear<1>>,
     pieces: Vec<(f64, f64)>,
+}
+
+/// What a search comes to, in order.
+#[derive(Clone, Copy, Debug)]
+pub enum Event {
+    /// The beginning; whether it is in the solid. Comes once and first.
+    Start(bool),
+    /// A meeting.
+    Meet(Meet),
+}
+
+/// A part of a ray, by its distances.
+#[derive(Clone, Copy, Debug)]
+pub struct Window {
+    /// Where it begins, not below 0.
+    pub from: f64,
+    /// What is met beyond need not be told.
+    pub to: f64,
+}
+
+impl Window {
+    /// All that is ahead.
+    pub const AHEAD: Window = Window { from: 0.0, to: f64::MAX };
 }
 
 /// A ray near the box.
@@ -44,54 +62,46 @@ struct Near {
     direction: DVec3,
     /// The distance of `origin` along the ray.
     start: f64,
-    /// Where it enters and leaves the box, from `origin`.
-    enter: Meet,
+    /// Where the search begins and where the box is left, from `origin`.
+    from: f64,
     leave: Meet,
+    /// The face of the box at which it begins, if it does.
+    entered: Option<u32>,
 }
 
 impl Near {
-    fn new(shape: &Implicit, ray: &LocalRay) -> Option<Near> {
+    fn new(shape: &Implicit, ray: &LocalRay, window: Window) -> Option<Near> {
         let bounds = shape.bounds();
         let to_middle = bounds.center() - ray.origin;
         let is_far = to_middle.abs().max_element() > FAR * bounds.size().max_element();
         let start = if is_far { to_middle.dot(ray.direction) / ray.direction.length_squared() } else { 0.0 };
         let origin = ray.at(start);
         let (enter, leave) = shape.within.ends(&LocalRay { origin, direction: ray.direction })?;
-        let ahead = leave.t > -start && enter.t < leave.t && leave.t.is_finite();
-        ahead.then_some(Near { origin, direction: ray.direction, start, enter, leave })
-    }
-
-    /// Where the search begins.
-    fn from(&self) -> f64 {
-        self.enter.t.max(-self.start)
-    }
-
-    fn starts_within(&self) -> bool {
-        self.enter.t <= -self.start
+        let begin = window.from - start;
+        let (from, entered) = if enter.t <= begin { (begin, None) } else { (enter.t, Some(enter.face)) };
+        let ahead = from < leave.t && leave.t.is_finite() && from + start <= window.to;
+        ahead.then_some(Near { origin, direction: ray.direction, start, from, leave, entered })
     }
 }
 
-/// Whether the ray's origin is in the solid, as the search sees it.
-pub(super) fn starts_inside(shape: &Implicit, ray: &LocalRay) -> bool {
-    Near::new(shape, ray).is_some_and(|near| {
-        let p = near.origin + near.direction * near.from();
-        near.starts_within() && shape.value(p.clamp(shape.within.min, shape.within.max)) < 0.0
-    })
-}
-
-/// Calls `found` with each meeting in order, until it says false. Those beyond the limit may be left out.
-pub(super) fn each_meeting(
+/// Calls `found` with the beginning and each meeting in order, until it says false.
+pub(super) fn each_event(
     shape: &Implicit,
     ray: &LocalRay,
-    limit: f64,
-    mut found: impl FnMut(Meet) -> bool,
+    window: Window,
+    mut found: impl FnMut(Event) -> bool,
 ) {
-    let Some(near) = Near::new(shape, ray) else { return };
-    if near.from() + near.start > limit {
+    let Some(near) = Near::new(shape, ray, window) else {
+        found(Event::Start(false));
         return;
-    }
+    };
     let mut search = Search::new(shape, &near, SPARE.take());
-    search.run(limit, &mut |meet| !ahead(meet.t) || found(meet));
+    search.run(window.to, &mut |event| match event {
+        Event::Start(_) => found(event),
+        Event::Meet(meet) => {
+            !(ahead(meet.t) && meet.t >= window.from) || (meet.t <= window.to && found(event))
+        }
+    });
     #[cfg(test)]
     EVALUATIONS.set(EVALUATIONS.get() + u64::from(search.evaluations));
     SPARE.set(search.spare);
@@ -111,20 +121,22 @@ struct Search<'s> {
     near: &'s Near,
     spare: Spare,
     evaluations: u32,
-    /// Whether f is negative where the search has come to.
-    inside: bool,
+    /// Gives f's bits where the search is.
+    field: &'s Field,
+    /// Whether f is negative where the search has come to; none before it has begun.
+    inside: Option<bool>,
     hidden: Option<Hidden>,
     /// A place and f there, which the next piece often begins at.
     last: (f64, f64),
     stopped: bool,
 }
 
-type Found<'f> = &'f mut dyn FnMut(Meet) -> bool;
+type Found<'f> = &'f mut dyn FnMut(Event) -> bool;
 
 impl<'s> Search<'s> {
     fn new(shape: &'s Implicit, near: &'s Near, spare: Spare) -> Self {
-        let last = (f64::NAN, f64::NAN);
-        Search { shape, near, spare, evaluations: 0, inside: false, hidden: None, last, stopped: false }
+        let (last, field) = ((f64::NAN, f64::NAN), &shape.function.field);
+        Search { shape, near, spare, evaluations: 0, field, inside: None, hidden: None, last, stopped: false }
     }
 
     fn point(&self, s: f64) -> DVec3 {
@@ -136,9 +148,13 @@ impl<'s> Search<'s> {
     fn value(&mut self, s: f64) -> f64 {
         if self.last.0 != s {
             self.evaluations += 1;
-            self.last = (s, self.shape.value(self.point(s)));
+            self.last = (s, self.value_at(s));
         }
         self.last.1
+    }
+
+    fn value_at(&self, s: f64) -> f64 {
+        super::value(self.field, self.point(s))
     }
 
     /// The size of the coordinates that a place is computed from.
@@ -148,7 +164,7 @@ impl<'s> Search<'s> {
 
     fn tell(&mut self, s: f64, face: u32, found: Found<'_>) {
         let meet = Meet { t: self.near.start + s, face, ..Meet::default() };
-        self.stopped |= !found(meet);
+        self.stopped |= !found(Event::Meet(meet));
     }
 
     /// That f is undefined, or cannot be followed, from here on.
@@ -160,59 +176,86 @@ impl<'s> Search<'s> {
     }
 
     fn run(&mut self, limit: f64, found: Found<'_>) {
-        let (from, to) = (self.near.from(), self.near.leave.t);
-        let first = self.value(from);
-        if first.is_nan() {
-            return self.give_up(from, UNDEFINED, found);
-        }
-        self.inside = first < 0.0;
-        if self.inside && !self.near.starts_within() {
-            self.tell(from, FIRST_CUT + self.near.enter.face, found);
-        }
-        let cells = &self.shape.cells;
-        let bounds = self.shape.bounds();
-        let mut tape = u32::MAX;
-        if !self.stopped {
-            let (origin, direction) = (self.near.origin, self.near.direction);
-            cells.along(bounds, origin, direction, (from, to), &mut |a, b, of| {
-                if a + self.near.start > limit {
-                    self.stopped = true;
-                    return false;
+        let (from, to) = (self.near.from, self.near.leave.t);
+        let shape = self.shape;
+        let (origin, direction) = (self.near.origin, self.near.direction);
+        shape.cells.along(shape.bounds(), origin, direction, (from, to), &mut |a, b, cell| {
+            self.stopped |= a + self.near.start > limit;
+            if !self.stopped {
+                match cell {
+                    Visited::Empty(negative) => self.arrive(a, negative, found),
+                    Visited::Leaf(leaf) => self.leaf(a, b, leaf, found),
                 }
-                self.piece(a, b, of, of == tape, found);
-                tape = of;
-                !self.stopped
-            });
-        }
+            }
+            !self.stopped
+        });
         if !self.stopped {
             self.settle(found);
         }
-        if !self.stopped && self.inside {
+        if !self.stopped && self.inside == Some(true) {
             self.tell(to, FIRST_CUT + self.near.leave.face, found);
         }
     }
 
+    /// Comes to a place where f has a sign: a meeting where it is not the last one.
+    fn come(&mut self, s: f64, negative: bool, found: Found<'_>) {
+        let was = self.inside.replace(negative);
+        match (was, self.near.entered) {
+            (None, entered) => {
+                self.stopped |= !found(Event::Start(negative && entered.is_none()));
+                if let (false, true, Some(face)) = (self.stopped, negative, entered) {
+                    self.tell(self.near.from, FIRST_CUT + face, found);
+                }
+            }
+            (Some(was), _) if was != negative => self.tell(s, ON_SURFACE, found),
+            (Some(_), _) => {}
+        }
+    }
+
     /// Searches a piece of the ray in one cell.
-    fn piece(&mut self, a: f64, b: f64, tape: u32, _same: bool, found: Found<'_>) {
-        if self.certainly_away(a, b) {
+    fn leaf(&mut self, a: f64, b: f64, leaf: &Leaf, found: Found<'_>) {
+        self.field = self.shape.cells.tape(leaf);
+        if self.inside.is_none() {
+            self.begin(a, leaf, found);
+        }
+        if self.stopped || self.certainly_away(a, b) {
             return;
         }
-        let field = self.shape.cells.tape(tape);
-        let mut along = Encloser::reuse(field, std::mem::take(&mut self.spare.along));
-        let mut at = Encloser::reuse(field, std::mem::take(&mut self.spare.at));
-        let mut pieces = std::mem::take(&mut self.spare.pieces);
-        pieces.clear();
-        pieces.push((a, b));
-        while let Some((a, b)) = pieces.pop() {
-            if self.evaluations > MOST_EVALUATIONS {
-                self.give_up(a, UNRESOLVED, found);
+        let Some(plane) = &leaf.plane else { return self.piece(a, b, found) };
+        let along = plane.along(self.near.origin, self.near.direction);
+        match along.zeros(a, b) {
+            Zeros::None(negative) => self.arrive(a, negative, found),
+            Zeros::Within(part) if along.is_steady() => self.monotone(&part, &along, found),
+            Zeros::Within(part) => {
+                if let Some(negative) = part.before {
+                    self.arrive(a, negative, found);
+                }
+                if !self.stopped {
+                    self.piece(part.from, part.to, found);
+                }
             }
-            if self.stopped {
-                break;
-            }
-            self.look(a, b, &mut along, &mut at, &mut pieces, found);
         }
-        self.spare = Spare { along: along.into_memory(), at: at.into_memory(), pieces };
+    }
+
+    /// Where the ray starts.
+    fn begin(&mut self, a: f64, leaf: &Leaf, found: Found<'_>) {
+        let along = leaf.plane.as_ref().map(|plane| plane.along(self.near.origin, self.near.direction));
+        let sign = along.and_then(|along| along.sign(a));
+        let negative = match sign {
+            Some(negative) => negative,
+            None => {
+                let value = self.value(a);
+                if value.is_nan() {
+                    self.come(a, false, found);
+                    if !self.stopped {
+                        self.give_up(a, UNDEFINED, found);
+                    }
+                    return;
+                }
+                value < 0.0
+            }
+        };
+        self.come(a, negative, found);
     }
 
     /// By the scene's promise about the gradient.
@@ -220,123 +263,69 @@ impl<'s> Search<'s> {
         let Some(steepest) = self.shape.steepest else { return false };
         let value = self.value(a);
         let reach = steepest * self.near.direction.length() * (b - a) * (1.0 + f64::EPSILON * 8.0);
-        value.abs() > reach && (value < 0.0) == self.inside && self.hidden.is_none()
-    }
-
-    /// Decides about a piece, or splits it.
-    fn look(
-        &mut self,
-        a: f64,
-        b: f64,
-        along: &mut Encloser<'_, 1>,
-        at: &mut Encloser<'_, 0>,
-        pieces: &mut Vec<(f64, f64)>,
-        found: Found<'_>,
-    ) {
-        let all = self.bounds(a, b, along);
-        let (value, slope) = (all.value, all.slope[0]);
-        if value.is_empty() {
-            self.settle(found);
-            if !self.stopped {
-                self.give_up(a, UNDEFINED, found);
-            }
-            return;
-        }
-        if !value.partial && !value.contains(0.0) {
-            return self.arrive(a, value.hi < 0.0, found);
-        }
-        let is_steady = !value.partial && !slope.partial && !slope.contains(0.0);
-        if is_steady {
-            return self.monotone(a, b, found);
-        }
-        let middle = a / 2.0 + b / 2.0;
-        let scale = self.scale(a).max(self.scale(b));
-        let is_least = b - a <= LEAST_STEPS * f64::EPSILON * scale || !(a < middle && middle < b);
-        if is_least {
-            return self.hide(a, b, value.partial, found);
-        }
-        let here = self.bounds_at(middle, at);
-        if !value.partial && b - a <= SMALL * scale && value.width() <= 4.0 * here.width() {
-            return self.hide(a, b, false, found);
-        }
-        let (left, right) = if value.partial { (middle, middle) } else { gap(a, b, middle, here, slope) };
-        if right < b {
-            pieces.push((right, b));
-        }
-        if left > a {
-            pieces.push((a, left));
-        } else if right > middle || left < middle {
-            // Nothing up to here; what comes after starts with a known sign.
-            self.arrive(a, here.hi < 0.0, found);
-        }
-    }
-
-    fn bounds(&mut self, a: f64, b: f64, along: &mut Encloser<'_, 1>) -> Enclosed<1> {
-        self.evaluations += 1;
-        let s = Interval::new(a, b);
-        let (o, d) = (self.near.origin, self.near.direction);
-        let within = &self.shape.within;
-        let coordinate = |axis: usize| {
-            let along = Interval::point(o[axis]) + Interval::point(d[axis]) * s;
-            Interval {
-                lo: along.lo.max(within.min[axis]),
-                hi: along.hi.min(within.max[axis]),
-                partial: false,
-            }
-        };
-        let at = [0, 1, 2].map(|axis| {
-            let inside = coordinate(axis);
-            let clamped = |x: f64| x.clamp(within.min[axis], within.max[axis]);
-            if inside.is_empty() { Interval::new(clamped(inside.hi), clamped(inside.lo)) } else { inside }
-        });
-        along.run(&directions(at, [d]))
-    }
-
-    /// All that f can be at a place, rounding included.
-    fn bounds_at(&mut self, s: f64, at: &mut Encloser<'_, 0>) -> Interval {
-        self.evaluations += 1;
-        at.run(&self.point(s).to_array().map(Enclosed::constant)).value
+        value.abs() > reach && Some(value < 0.0) == self.inside && self.hidden.is_none()
     }
 
     /// Comes to a place where the sign is certain.
     fn arrive(&mut self, s: f64, negative: bool, found: Found<'_>) {
         self.settle(found);
-        if !self.stopped && negative != self.inside {
-            self.inside = negative;
-            self.tell(s, ON_SURFACE, found);
+        if !self.stopped && self.inside != Some(negative) {
+            self.come(s, negative, found);
         }
     }
 
-    /// A piece over which f only rises, or only falls.
-    fn monotone(&mut self, a: f64, b: f64, found: Found<'_>) {
-        if self.hidden.is_some() {
-            self.settle(found);
-            if self.stopped {
-                return;
-            }
+    /// Signs at the ends of a piece, where they are not known from elsewhere by plain arithmetic; what was hidden before it is settled first.
+    /// None where the search is over.
+    fn ends(&mut self, part: &Part, found: Found<'_>) -> Option<(bool, bool)> {
+        self.settle(found);
+        let mut sign = |known: Option<bool>, s: f64| {
+            known.or_else(|| Some(self.value(s)).filter(|value| !value.is_nan()).map(|value| value < 0.0))
+        };
+        let signs = sign(part.before, part.from).zip(sign(part.after, part.to));
+        if self.stopped {
+            return None;
         }
-        let start = self.value(a);
-        let end = self.value(b);
-        if start.is_nan() || end.is_nan() {
-            return self.give_up(a, UNDEFINED, found);
+        let Some((start, end)) = signs else {
+            self.give_up(part.from, UNDEFINED, found);
+            return None;
+        };
+        self.come(part.from, start, found);
+        (!self.stopped).then_some((start, end))
+    }
+
+    /// A piece over which f only rises, or only falls, and is near a line.
+    fn monotone(&mut self, part: &Part, along: &Along, found: Found<'_>) {
+        let Some((start, end)) = self.ends(part, found) else { return };
+        if start != end {
+            let tolerance = self.tolerance(part);
+            let guess = bracket::Guess { at: along.zero(), slope: along.slope, bend: along.bend };
+            let root = bracket::secant(part.from, part.to, guess, tolerance, |s| {
+                self.evaluations += 1;
+                self.value_at(s)
+            });
+            self.come(root, end, found);
         }
-        if (start < 0.0) != self.inside {
-            self.inside = start < 0.0;
-            self.tell(a, ON_SURFACE, found);
+    }
+
+    /// The same where no more is known.
+    fn monotone_between(&mut self, part: &Part, found: Found<'_>) {
+        let Some((start, end)) = self.ends(part, found) else { return };
+        if start != end {
+            let (a, b) = ((part.from, self.value(part.from)), (part.to, self.value(part.to)));
+            let root = self.bracketed(a, b);
+            self.come(root, end, found);
         }
-        if (end < 0.0) != self.inside && !self.stopped {
-            let root = self.bracketed((a, start), (b, end));
-            self.inside = end < 0.0;
-            self.last = (b, end);
-            self.tell(root, ON_SURFACE, found);
-        }
+    }
+
+    fn tolerance(&self, part: &Part) -> f64 {
+        f64::EPSILON * self.scale(part.from).max(self.scale(part.to))
     }
 
     fn bracketed(&mut self, a: (f64, f64), b: (f64, f64)) -> f64 {
         let tolerance = f64::EPSILON * self.scale(a.0).max(self.scale(b.0));
         bracket::closest(a, b, tolerance, |s| {
             self.evaluations += 1;
-            self.shape.value(self.point(s))
+            self.value_at(s)
         })
     }
 
@@ -362,11 +351,10 @@ impl<'s> Search<'s> {
             return self.give_up(hidden.from, UNDEFINED, found);
         }
         let middle = hidden.from / 2.0 + hidden.to / 2.0;
-        if (end < 0.0) != self.inside {
+        if Some(end < 0.0) != self.inside {
             let crosses = (start < 0.0) != (end < 0.0);
             let root = if crosses { self.bracketed((hidden.from, start), (hidden.to, end)) } else { middle };
-            self.inside = end < 0.0;
-            self.tell(root, ON_SURFACE, found);
+            self.come(root, end < 0.0, found);
         } else if !hidden.partial {
             self.tell(middle, ON_SURFACE, found);
             if !self.stopped {
@@ -374,23 +362,4 @@ impl<'s> Search<'s> {
             }
         }
     }
-}
-
-/// Around the middle f stays on one side of 0: where that ends on either hand, by the extreme slopes. Both are the middle where nothing is
-/// known.
-fn gap(a: f64, b: f64, middle: f64, here: Interval, slope: Interval) -> (f64, f64) {
-    let size = if here.lo > 0.0 {
-        here.lo
-    } else if here.hi < 0.0 {
-        -here.hi
-    } else {
-        return (middle, middle);
-    };
-    let (toward_left, toward_right) =
-        if here.lo > 0.0 { (slope.hi, -slope.lo) } else { (-slope.lo, slope.hi) };
-    // Rounded so that the gap is never too wide.
-    let reach = |steepness: f64| {
-        if steepness > 0.0 { size / steepness * (1.0 - 8.0 * f64::EPSILON) } else { f64::INFINITY }
-    };
-    ((middle - reach(toward_left)).max(a).min(middle), (middle + reach(toward_right)).min(b).max(middle))
 }
