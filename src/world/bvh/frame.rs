@@ -35,12 +35,36 @@ impl Frame {
     }
 }
 
+/// One f32 step of a number, as a share of it, at the most; casting rounds by half of one.
+const STEP: f64 = f32::EPSILON as f64;
+/// The same where f32 is no longer that fine.
+const LEAST_STEP: f64 = f32::MIN_POSITIVE as f64;
+
 /// A float at or below x. The subtraction into the frame and the cast are together less than one f32 step.
+#[inline(always)]
 pub(super) fn round_down(x: f64) -> f32 {
-    (x as f32).next_down()
+    (x - (x.abs() * STEP + LEAST_STEP)) as f32
 }
 
 /// A float at or above x.
+#[inline(always)]
 pub(super) fn round_up(x: f64) -> f32 {
-    (x as f32).next_up()
+    (x + (x.abs() * STEP + LEAST_STEP)) as f32
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rounding_goes_outward_by_less_than_two_steps() {
+        let magnitudes = [0.0, 1e-60, 1e-40, 1e-38, 1e-20, 0.1, 1.0, 1.0 + 1e-9, 2.0, 3e7];
+        for x in magnitudes.into_iter().flat_map(|x| [x, -x]) {
+            let (below, above) = (f64::from(round_down(x)), f64::from(round_up(x)));
+            assert!(below < x && x < above, "{x}: {below} {above}");
+            let most = 2.0 * (x.abs() * STEP + LEAST_STEP);
+            assert!(x - below < most && above - x < most, "{x}: {below} {above}");
+        }
+        assert_eq!(round_up(f64::MAX), f32::INFINITY);
+    }
 }

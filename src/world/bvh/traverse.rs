@@ -34,9 +34,14 @@ const STACK: usize = 32;
 /// Where a ray enters and leaves a box, at or after 0 and at or before `t_max`; none where it misses. Conservative: far sides are
 /// widened. All comparisons let a NaN (0·∞, a ray in the plane of a side) pass.
 pub fn clip(bounds: &Aabb, origin: DVec3, direction: DVec3, t_max: f64) -> Option<(f64, f64)> {
+    clip_by(bounds, origin, direction.recip(), t_max)
+}
+
+/// The same by 1 over each coordinate of the direction.
+fn clip_by(bounds: &Aabb, origin: DVec3, inverse: DVec3, t_max: f64) -> Option<(f64, f64)> {
     let (mut near, mut far) = (0.0, t_max);
     for a in 0..3 {
-        let inverse = 1.0 / direction[a];
+        let inverse = inverse[a];
         let sides = if inverse.is_sign_negative() {
             (bounds.max[a], bounds.min[a])
         } else {
@@ -71,10 +76,9 @@ struct Narrow {
 }
 
 impl Narrow {
-    /// `start` is where the ray enters the tree's bounds.
-    fn new(tree: &Tree, origin: DVec3, direction: DVec3, start: f64) -> Narrow {
-        let e = exponent(direction.abs().max_element());
-        let (unit, reach) = (power_of_two(-e), power_of_two(e) * tree.frame.scale);
+    /// `start` is where the ray enters the tree's bounds, `inverse` 1 over each coordinate of its direction.
+    fn new(tree: &Tree, origin: DVec3, direction: DVec3, inverse: DVec3, start: f64) -> Narrow {
+        let unit = power_of_two(exponent(direction.abs().max_element()));
         let from_center = origin - tree.frame.center;
         let entry = (from_center + direction * start) * tree.frame.scale;
         let travelled = from_center.abs().max_element() + direction.abs().max_element() * start;
@@ -87,10 +91,10 @@ impl Narrow {
             near_row: [0, 1, 2],
             far_row: [3, 4, 5],
             start,
-            per_t: reach,
+            per_t: unit * tree.frame.scale,
         };
         for a in 0..3 {
-            let inverse = 1.0 / (direction[a] * unit);
+            let inverse = inverse[a] * unit;
             let (below, above) = (round_down(entry[a] - margin), round_up(entry[a] + margin));
             let negative = inverse.is_sign_negative();
             (ray.near_origin[a], ray.far_origin[a]) = if negative { (below, above) } else { (above, below) };
@@ -175,14 +179,23 @@ impl Stack {
         let entry = |i: usize| Entry { near: near[i], child: node.child(i), count: node.count(i) };
         let mut nearest = entry(mask.trailing_zeros() as usize & (WIDTH - 1));
         mask &= mask - 1;
+        if mask == 0 {
+            return Some(nearest);
+        }
         let bottom = self.len;
-        while mask != 0 {
+        loop {
             let mut other = entry(mask.trailing_zeros() as usize & (WIDTH - 1));
             mask &= mask - 1;
             if other.near < nearest.near {
                 std::mem::swap(&mut other, &mut nearest);
             }
             self.push(other);
+            if mask == 0 {
+                break;
+            }
+        }
+        if self.len == bottom + 1 {
+            return Some(nearest);
         }
         // Where some spilled, their order is lost, which costs time only.
         sort_far_first(&mut self.entries[bottom..self.len]);
@@ -207,8 +220,9 @@ impl Tree {
         if self.nodes.is_empty() || t_max < 0.0 {
             return;
         }
-        if let Some((start, _)) = clip(&self.bounds, origin, direction, t_max) {
-            let ray = Narrow::new(self, origin, direction, start);
+        let inverse = direction.recip();
+        if let Some((start, _)) = clip_by(&self.bounds, origin, inverse, t_max) {
+            let ray = Narrow::new(self, origin, direction, inverse, start);
             wide::walk(&self.nodes, &ray, t_max, leaf);
         }
     }

@@ -27,7 +27,16 @@ const FAR: f64 = 16384.0;
 /// So do rays that pass within this share of the radius from grazing: the others lose six bits of the chord at worst.
 const GRAZING: f64 = 1.0 / 64.0;
 
+/// True where plain arithmetic already knows that a ray misses: so for most. `l` is its point nearest to the centre, as seen from there;
+/// 1/a in place of a division moves it, as against the full test, by less than 32 roundings of `reach`.
+#[inline(always)]
+fn passes_by(l: DVec3, radius: f64, reach: f64) -> bool {
+    let clear = radius + gamma(64) * (reach + radius);
+    l.length_squared() > clear * clear
+}
+
 impl Sphere {
+    #[inline]
     pub(super) fn meet(&self, ray: &LocalRay, limit: f64) -> Option<Meet> {
         let (near, far) = self.roots(ray)?;
         let t = if near > 0.0 { near } else { far };
@@ -41,14 +50,18 @@ impl Sphere {
     }
 
     /// Both distances, in order.
+    #[inline]
     fn roots(&self, ray: &LocalRay) -> Option<(f64, f64)> {
         let (d, r) = (ray.direction, self.radius);
         let f = ray.origin - self.center;
         let a = d.dot(d);
         let b = -f.dot(d);
+        let reach = f.abs().max_element();
+        if passes_by(f + d * (b * (1.0 / a)), r, reach) {
+            return None;
+        }
         let l = f + d * (b / a);
         let miss_by = l.length() - r;
-        let reach = f.abs().max_element();
         if miss_by > gamma(16) * (reach + r) {
             return None;
         }
@@ -62,6 +75,7 @@ impl Sphere {
     }
 
     /// From the point nearest to the centre, found in twice the working precision. `approach` is its distance, roughly.
+    #[inline(never)]
     fn precise_roots(&self, ray: &LocalRay, approach: f64) -> Option<(f64, f64)> {
         let (o, d, c) = (ray.origin.to_array(), ray.direction.to_array(), self.center.to_array());
         let along = |from: [Double; 3], t: f64| -> [Double; 3] {

@@ -67,12 +67,13 @@ impl Sheared {
         let mut u = c[0] * b[1] - c[1] * b[0];
         let mut v = a[0] * c[1] - a[1] * c[0];
         let mut w = b[0] * a[1] - b[1] * a[0];
-        if u == 0.0 || v == 0.0 || w == 0.0 {
+        if (u == 0.0) | (v == 0.0) | (w == 0.0) {
             u = difference_of_products(c[0], b[1], c[1], b[0]);
             v = difference_of_products(a[0], c[1], a[1], c[0]);
             w = difference_of_products(b[0], a[1], b[1], a[0]);
         }
-        if (u < 0.0 || v < 0.0 || w < 0.0) && (u > 0.0 || v > 0.0 || w > 0.0) {
+        // One branch: which edge a ray misses by cannot be foreseen.
+        if ((u < 0.0) | (v < 0.0) | (w < 0.0)) & ((u > 0.0) | (v > 0.0) | (w > 0.0)) {
             return None;
         }
         let determinant = u + v + w;
@@ -211,7 +212,13 @@ impl Triangle {
     }
 }
 
-/// The box around corners: exact, as no arithmetic is done.
-pub fn bounds_of(corners: [DVec3; 3]) -> Aabb {
-    Aabb::of(corners)
+/// The box around corners, which are finite: exact, as no arithmetic is done.
+#[inline]
+pub fn bounds_of([a, b, c]: [DVec3; 3]) -> Aabb {
+    let (low, high) =
+        (|a: f64, b: f64| if b < a { b } else { a }, |a: f64, b: f64| if b > a { b } else { a });
+    let each = |pick: fn(f64, f64) -> f64| {
+        DVec3::new(pick(pick(a.x, b.x), c.x), pick(pick(a.y, b.y), c.y), pick(pick(a.z, b.z), c.z))
+    };
+    Aabb { min: each(low), max: each(high) }
 }

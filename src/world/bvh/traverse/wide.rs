@@ -116,7 +116,7 @@ mod tests {
             // Some along an axis, where planes meet 0·∞.
             let direction = if i % 5 == 0 { DVec3::AXES[i % 3] } else { (corner(i) - origin).normalize() };
             let Some((start, _)) = clip(&tree.bounds, origin, direction, 1e3) else { continue };
-            let ray = Narrow::new(&tree, origin, direction, start);
+            let ray = Narrow::new(&tree, origin, direction, direction.recip(), start);
             let plain = offered(|leaf| {
                 super::super::walk(&tree.nodes, &ray, 1e3, |node, limit| meets(&ray, node, limit), leaf);
             });
