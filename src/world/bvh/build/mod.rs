@@ -14,6 +14,7 @@ use super::frame::Frame;
 use super::{Tree, WIDTH};
 use crate::math::Aabb;
 use boxes::{Box32, Boxed, Item};
+use glam::DVec3;
 use rayon::prelude::*;
 use split::{Bins, Part};
 
@@ -40,35 +41,43 @@ pub(super) fn build(count: usize, bounds_of: impl Fn(usize) -> Aabb + Sync) -> T
     Tree { frame, bounds, unbounded: any_unbounded, nodes, order, bounded }
 }
 
+/// So many boxes are surveyed by one thread: no more than one is woken for fewer, and a scene of few starts no threads at all.
+const BY_ONE_THREAD: usize = 1 << 12;
+
 /// The box around the finite boxes, and the items without one.
 pub(super) fn survey(count: usize, bounds_of: &(impl Fn(usize) -> Aabb + Sync)) -> (Aabb, Vec<u32>) {
-    (0..count)
-        .into_par_iter()
-        .with_min_len(1 << 12)
-        .fold(
-            || (Aabb::EMPTY, Vec::new()),
-            |(bounds, mut unbounded), i| {
-                let b = bounds_of(i);
-                if is_unbounded(&b) {
-                    unbounded.push(i as u32);
-                    return (bounds, unbounded);
-                }
-                (if b.is_empty() { bounds } else { bounds.union(b) }, unbounded)
-            },
-        )
-        .reduce(
-            || (Aabb::EMPTY, Vec::new()),
-            |(a, mut x), (b, y)| {
-                x.extend(y);
-                (a.union(b), x)
-            },
-        )
+    let nothing = || (Aabb::EMPTY, Vec::new());
+    let with = |(bounds, mut unbounded): (Aabb, Vec<u32>), i: usize| {
+        let b = bounds_of(i);
+        if is_usable(&b) {
+            return (bounds.union(b), unbounded);
+        }
+        if !is_nothing(&b) {
+            unbounded.push(i as u32);
+        }
+        (bounds, unbounded)
+    };
+    if count <= BY_ONE_THREAD {
+        return (0..count).fold(nothing(), with);
+    }
+    (0..count).into_par_iter().with_min_len(BY_ONE_THREAD).fold(nothing, with).reduce(
+        nothing,
+        |(a, mut x), (b, y)| {
+            x.extend(y);
+            (a.union(b), x)
+        },
+    )
 }
 
-/// Infinite in any direction, NaN, or so large that its size overflows. The empty box is not.
-fn is_unbounded(b: &Aabb) -> bool {
-    let nothing = b.is_empty() && !b.min.is_nan() && !b.max.is_nan();
-    !nothing && !(b.min.is_finite() && b.max.is_finite() && b.size().is_finite())
+/// Neither empty nor infinite in any direction, nor NaN, nor so large that its size overflows.
+fn is_usable(b: &Aabb) -> bool {
+    let size = b.size();
+    (size.cmpge(DVec3::ZERO) & size.cmple(DVec3::MAX)).all()
+}
+
+/// The empty box: what has it is never met. All others that are not usable are offered to every ray.
+fn is_nothing(b: &Aabb) -> bool {
+    b.is_empty() && !b.min.is_nan() && !b.max.is_nan()
 }
 
 /// The items with a finite box, in order. Made in place: for a million of them a second copy would be felt.
@@ -76,11 +85,14 @@ fn narrow(count: usize, bounds_of: &(impl Fn(usize) -> Aabb + Sync), frame: &Fra
     const NONE: u32 = u32::MAX;
     let item = |i: usize| {
         let b = bounds_of(i);
-        let usable = !b.is_empty() && !is_unbounded(&b);
-        Item::new(Box32::around(&b, frame), if usable { i as u32 } else { NONE })
+        Item::new(Box32::around(&b, frame), if is_usable(&b) { i as u32 } else { NONE })
     };
     let mut items = Vec::new();
-    (0..count).into_par_iter().with_min_len(1 << 12).map(item).collect_into_vec(&mut items);
+    if count <= BY_ONE_THREAD {
+        items.extend((0..count).map(item));
+    } else {
+        (0..count).into_par_iter().with_min_len(BY_ONE_THREAD).map(item).collect_into_vec(&mut items);
+    }
     items.retain(|item| item.number() != NONE);
     items
 }
