@@ -183,23 +183,20 @@ fn tone(map: ToneMap, c: Rgb) -> Rgb {
 
 /// A linear number in 0 … 1 as 8-bit sRGB (IEC 61966-2-1), clipped, rounded to the nearest. NaN is 0.
 pub fn to_srgb8(linear: f64) -> u8 {
-    // Tables answer without a power for each channel of each pixel: of the least that each number stands for, and of where
-    // among them to begin to look.
+    // A table answers without a power for each channel of each pixel: the number that the lower end of a cell stands for, or the next.
     let table = srgb_table();
     let cell = (linear.clamp(0.0, 1.0) * CELLS as f64) as usize;
-    let mut encoded = table.first[cell];
-    while encoded < 255 && table.steps[encoded as usize] <= linear {
-        encoded += 1;
-    }
-    encoded
+    let encoded = table.first[cell];
+    encoded + u8::from(table.steps[usize::from(encoded)] <= linear)
 }
 
-/// Into how many equal parts 0 … 1 is cut: steps are nowhere much closer (sRGB begins with 12.92 · 255 = 3295 a unit).
+/// Into how many equal parts 0 … 1 is cut: more than steps are anywhere (sRGB begins with 12.92 · 255 = 3295 a unit), so that no cell has
+/// two.
 const CELLS: usize = 4096;
 
 struct SrgbTable {
-    /// The least linear number that rounds to each of 1 … 255.
-    steps: [f64; 255],
+    /// The least linear number that rounds to each of 1 … 255; after them one that is never reached.
+    steps: [f64; 256],
     /// What the lower end of each cell, and 1, rounds to.
     first: [u8; CELLS + 1],
 }
@@ -207,7 +204,8 @@ struct SrgbTable {
 fn srgb_table() -> &'static SrgbTable {
     static TABLE: std::sync::OnceLock<SrgbTable> = std::sync::OnceLock::new();
     TABLE.get_or_init(|| {
-        let steps: [f64; 255] = std::array::from_fn(|i| srgb_decode((i as f64 + 0.5) / 255.0));
+        let step = |i: usize| if i < 255 { srgb_decode((i as f64 + 0.5) / 255.0) } else { f64::NAN };
+        let steps: [f64; 256] = std::array::from_fn(step);
         let first = std::array::from_fn(|cell| {
             steps.partition_point(|step| *step <= cell as f64 / CELLS as f64) as u8
         });

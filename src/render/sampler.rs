@@ -13,7 +13,11 @@ use glam::DVec2;
 /// The random numbers of one camera sample, and what is noted while it is traced. Cheap to make; nothing is shared.
 #[derive(Clone, Debug)]
 pub struct Sampler {
-    pixel: u64,
+    seed: u64,
+    /// Row and column.
+    place: u64,
+    /// Both mixed, once a number is asked for: many a sample needs none.
+    pixel: Option<u64>,
     sample: u32,
     dimension: u32,
     /// Rays cast for this sample.
@@ -54,9 +58,10 @@ impl std::ops::AddAssign for RayCounts {
 impl Sampler {
     /// The numbers of one sample of the pixel in column x and row y of the whole picture.
     pub fn new(seed: u64, x: u32, y: u32, sample: u32) -> Sampler {
-        let place = u64::from(y) << 32 | u64::from(x);
         Sampler {
-            pixel: mix(mix(seed ^ GOLDEN).wrapping_add(mix(place))),
+            seed,
+            place: u64::from(y) << 32 | u64::from(x),
+            pixel: None,
             sample,
             dimension: 0,
             rays: RayCounts::default(),
@@ -76,7 +81,9 @@ impl Sampler {
 
     /// The next dimensions as a set of points that are stratified together. Taken once, before a loop over its points.
     pub fn next_set(&mut self) -> PointSet {
-        let key = mix(self.pixel.wrapping_add(u64::from(self.dimension).wrapping_mul(GOLDEN)));
+        let (seed, place) = (self.seed, self.place);
+        let pixel = *self.pixel.get_or_insert_with(|| mix(mix(seed ^ GOLDEN).wrapping_add(mix(place))));
+        let key = mix(pixel.wrapping_add(u64::from(self.dimension).wrapping_mul(GOLDEN)));
         self.dimension += 1;
         PointSet { order: key as u32, scramble: mix(key ^ GOLDEN), sample: self.sample }
     }

@@ -75,7 +75,33 @@ struct Task {
 
 thread_local! {
     /// The list of what is still to do, kept between samples so that tracing does not allocate.
-    static TASKS: Cell<Vec<Task>> = const { Cell::new(Vec::new()) };
+    static KEPT: Cell<Vec<Task>> = const { Cell::new(Vec::new()) };
+}
+
+/// What is still to do in a sample: nothing at all for most, which then do not ask for the kept list.
+#[derive(Default)]
+struct Tasks(Vec<Task>);
+
+impl Tasks {
+    /// Adds a task, if it can still matter.
+    fn push(&mut self, task: Task) -> bool {
+        let matters = task.weight.max_element() > LEAST_WEIGHT;
+        if matters {
+            if self.0.capacity() == 0 {
+                self.0 = KEPT.take();
+                self.0.clear();
+            }
+            self.0.push(task);
+        }
+        matters
+    }
+
+    /// Keeps the room for the next sample.
+    fn keep(self) {
+        if self.0.capacity() > 0 {
+            KEPT.set(self.0);
+        }
+    }
 }
 
 /// A branch that can change its sample by less than this share of the light it meets is not followed: it bounds the number
@@ -85,8 +111,7 @@ const LEAST_WEIGHT: f64 = 1.0 / (1u64 << 30) as f64;
 impl Tracer for Whitted {
     fn radiance(&self, world: &World, ray: Ray, sampler: &mut Sampler) -> Rgb {
         sampler.rays.camera += 1;
-        let mut tasks = TASKS.take();
-        tasks.clear();
+        let mut tasks = Tasks::default();
         let mut task = Task { ray, weight: Rgb::ONE, segment: 1, inside: Inside::NOTHING };
         let mut sum = Rgb::ZERO;
         loop {
@@ -97,52 +122,49 @@ impl Tracer for Whitted {
                     break;
                 }
             }
-            match tasks.pop() {
+            match tasks.0.pop() {
                 Some(next) => task = next,
                 None => break,
             }
         }
-        TASKS.set(tasks);
+        tasks.keep();
         sum
     }
 }
 
 impl Whitted {
     /// What the end of one ray adds to the sample; the rays that go on from there are added to the tasks.
-    fn follow(
-        &self,
-        world: &World,
-        task: &Task,
-        tasks: &mut Vec<Task>,
-        sampler: &mut Sampler,
-    ) -> Sampled<Rgb> {
+    fn follow(&self, world: &World, task: &Task, tasks: &mut Tasks, sampler: &mut Sampler) -> Sampled<Rgb> {
         let Some(hit) = world.closest(&task.ray) else {
             return Ok(task.weight * task.inside.kept(f64::INFINITY) * self.beyond(&task.ray));
         };
         let bsdf = Bsdf::at(world, &hit, &task.ray)?;
-        let weight = task.weight * task.inside.or_in(&bsdf).kept(hit.t);
+        let mut weight = task.weight;
+        if let Some(absorb) = task.inside.absorbing(&bsdf) {
+            weight *= kept(absorb, hit.t);
+        }
         if bsdf.opacity < 1.0 {
             let past = Task {
                 ray: hit.spawn(task.ray.direction, task.ray.kind),
                 weight: weight * (1.0 - bsdf.opacity),
                 ..*task
             };
-            push(tasks, past);
+            tasks.push(past);
+            weight *= bsdf.opacity;
         }
-        let weight = weight * bsdf.opacity;
         let mut radiance = bsdf.ambient + emitted(world, &hit, &bsdf);
         let last = self.second_rays && task.segment >= self.depth;
         if !last {
             radiance += self.local(world, &hit, &bsdf, task.segment == 1, sampler)?;
         }
-        if self.second_rays && !last {
-            self.branch(&hit, &bsdf, Task { weight, ..*task }, tasks, sampler);
+        if self.second_rays && !last && bsdf.goes_on() {
+            self.branch(&hit, &bsdf, &Task { weight, ..*task }, tasks, sampler);
         }
         Ok(weight * radiance)
     }
 
     /// The mirrored and the bent ray of a hit.
-    fn branch(&self, hit: &Hit<'_>, bsdf: &Bsdf, from: Task, tasks: &mut Vec<Task>, sampler: &mut Sampler) {
+    fn branch(&self, hit: &Hit<'_>, bsdf: &Bsdf, from: &Task, tasks: &mut Tasks, sampler: &mut Sampler) {
         let next = |s: Scattered, inside| Task {
             ray: hit.spawn(s.direction, RayKind::Indirect),
             weight: from.weight * s.weight,
@@ -151,21 +173,12 @@ impl Whitted {
         };
         let u = if bsdf.is_glossy() { sampler.next_2d() } else { glam::DVec2::ZERO };
         if let Some(bent) = bsdf.transmitted(u) {
-            sampler.rays.refracted += u64::from(push(tasks, next(bent, from.inside.across(bsdf))));
+            sampler.rays.refracted += u64::from(tasks.push(next(bent, from.inside.across(bsdf))));
         }
         if let Some(mirrored) = bsdf.mirrored(u) {
-            sampler.rays.reflected += u64::from(push(tasks, next(mirrored, from.inside)));
+            sampler.rays.reflected += u64::from(tasks.push(next(mirrored, from.inside)));
         }
     }
-}
-
-/// Adds a task, if it can still matter.
-fn push(tasks: &mut Vec<Task>, task: Task) -> bool {
-    let matters = task.weight.max_element() > LEAST_WEIGHT;
-    if matters {
-        tasks.push(task);
-    }
-    matters
 }
 
 /// Radiance that the surface sends out: on its normal's side, and inward too from a closed solid.
@@ -198,10 +211,13 @@ impl Inside {
         self
     }
 
-    /// For a ray that meets a surface from within without having entered it: the camera stands inside.
-    fn or_in(self, bsdf: &Bsdf) -> Inside {
-        let unknown = self.n == 0 && !bsdf.outside && bsdf.is_transmissive();
-        if unknown { Inside { absorb: [bsdf.absorb; 3], n: 1 } } else { self }
+    /// What absorbs light on the way to a surface, if anything does: the innermost medium, or, for a ray that meets the surface from within
+    /// without having entered it, as the camera stands inside, that of the surface.
+    fn absorbing(&self, bsdf: &Bsdf) -> Option<Rgb> {
+        match self.n {
+            0 => (!bsdf.outside && bsdf.is_transmissive()).then_some(bsdf.absorb),
+            n => Some(self.absorb[n - 1]),
+        }
     }
 
     /// Share of light left after a length, by Beer's law. Infinite lengths leave nothing of what is absorbed at all.

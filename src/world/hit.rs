@@ -4,6 +4,7 @@
 //! clear of the surface whatever the rounding was, and no farther: no absolute distance appears. Pharr, Jakob & Humphreys,
 //! *Physically Based Rendering* (4th ed.) §6.8.
 
+use super::shape::perpendicular;
 use super::texture::TextureFault;
 use super::{PrimitiveId, Ray, RayKind};
 use crate::math::error::gamma;
@@ -23,8 +24,8 @@ pub struct Hit<'w> {
     pub geometric_normal: DVec3,
     /// Unit shading normal, on the geometric normal's side.
     pub normal: DVec3,
-    /// Unit tangent along growing u, perpendicular to `normal` (arbitrary where u has no direction).
-    pub tangent: DVec3,
+    /// Along growing u, of any length and not quite perpendicular to `normal`; 0 where u has no direction.
+    pub(super) along_u: DVec3,
     /// Surface parameters.
     pub uv: DVec2,
     /// The point in the object's own space before its transforms, for solid patterns.
@@ -50,6 +51,7 @@ pub struct SurfacePoint {
 
 impl SurfacePoint {
     /// The point moved clear of its surface, to the side that `direction` points to.
+    #[inline]
     pub fn offset_toward(&self, direction: DVec3) -> DVec3 {
         let distance = self.normal.abs().dot(self.error);
         let offset =
@@ -60,6 +62,7 @@ impl SurfacePoint {
 }
 
 /// The next float in the direction of `offset`, so that rounding the sum cannot undo it.
+#[inline]
 fn away(x: f64, offset: f64) -> f64 {
     if offset > 0.0 {
         x.next_up()
@@ -71,7 +74,13 @@ fn away(x: f64, offset: f64) -> f64 {
 }
 
 impl Hit<'_> {
+    /// Unit tangent along growing u, perpendicular to `normal` (arbitrary where u has no direction).
+    pub fn tangent(&self) -> DVec3 {
+        tangent_for(self.normal, self.along_u)
+    }
+
     /// The point with its error and geometric normal.
+    #[inline]
     pub fn surface_point(&self) -> SurfacePoint {
         SurfacePoint { point: self.point, error: self.error, normal: self.geometric_normal }
     }
@@ -83,6 +92,7 @@ impl Hit<'_> {
     }
 
     /// A shadow ray to a point in space (not on a surface): unit direction, `t_max` the distance.
+    #[inline]
     pub fn spawn_to(&self, target: DVec3) -> Ray {
         let origin = self.surface_point().offset_toward(target - self.point);
         shadow_ray(origin, target)
@@ -96,9 +106,21 @@ impl Hit<'_> {
 }
 
 /// Ends short of the target by the rounding of the distance and of the direction (a length is 4 roundings, a quotient 1).
+#[inline]
 fn shadow_ray(origin: DVec3, target: DVec3) -> Ray {
     let to = target - origin;
     let distance = to.length();
     let t_max = distance * (1.0 - gamma(8));
     Ray { origin, direction: to / distance, t_max, kind: RayKind::Shadow }
+}
+
+/// The unit tangent nearest to one that need not be perpendicular, or any where there is none.
+fn tangent_for(normal: DVec3, along: DVec3) -> DVec3 {
+    let size = along.abs().max_element();
+    let scaled = along / size;
+    let across = scaled - normal * normal.dot(scaled);
+    // What is left of a tangent that is the normal up to rounding points nowhere.
+    let usable = size > 0.0 && across.length_squared() > gamma(16) * gamma(16);
+    let chosen = if usable { across.try_normalize() } else { None };
+    chosen.unwrap_or_else(|| perpendicular(normal))
 }

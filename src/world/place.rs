@@ -4,9 +4,8 @@
 use super::aggregate::{Aggregate, Group, INHERITED, Instance, Item, mesh_material};
 use super::query::Candidate;
 use super::shape::csg::Solid;
-use super::shape::{LocalRay, Meet, Shape, carried, perpendicular};
+use super::shape::{LocalRay, Meet, Shape, carried};
 use super::{Hit, PrimitiveId, Provenance, World};
-use crate::math::error::gamma;
 use glam::DVec3;
 
 /// A step from a group into a placement.
@@ -109,7 +108,7 @@ impl World {
             error: world.error,
             geometric_normal: world.geometric_normal,
             normal,
-            tangent: tangent_for(normal, world.tangent),
+            along_u: world.tangent,
             uv: surface.uv,
             local_point,
             material,
@@ -193,15 +192,4 @@ fn on_side_of(normal: DVec3, geometric: DVec3) -> DVec3 {
     } else {
         geometric
     }
-}
-
-/// The unit tangent nearest to one that need not be perpendicular, or any where there is none.
-fn tangent_for(normal: DVec3, along: DVec3) -> DVec3 {
-    let size = along.abs().max_element();
-    let scaled = along / size;
-    let across = scaled - normal * normal.dot(scaled);
-    // What is left of a tangent that is the normal up to rounding points nowhere.
-    let usable = size > 0.0 && across.length_squared() > gamma(16) * gamma(16);
-    let chosen = if usable { across.try_normalize() } else { None };
-    chosen.unwrap_or_else(|| perpendicular(normal))
 }

@@ -2,7 +2,7 @@
 
 use super::aggregate::{Aggregate, Group, Item};
 use super::shape::triangle::Sheared;
-use super::shape::{Csg, LocalRay, Meet};
+use super::shape::{Csg, LocalRay, Meet, Shape};
 use super::{PrimitiveId, RayKind, World};
 use crate::scene::Hide;
 
@@ -41,6 +41,7 @@ struct Local {
 
 impl<'w> Query<'w> {
     /// The nearest meeting with a distance in (0, limit], or any; ties go to the smaller id, whatever the tree.
+    #[inline]
     pub fn run(
         world: &'w World,
         ray: &LocalRay,
@@ -92,26 +93,23 @@ impl<'w> Query<'w> {
         if self.any && self.found.is_some() { -1.0 } else { self.limit * local.per_world }
     }
 
+    #[inline]
     fn visit_item(&mut self, group: &Group, position: usize, local: &Local) {
-        let number = || group.number_of(position as u32);
-        if !group.hide.is_empty() && is_hidden(group.hide[number() as usize], self.kind) {
+        if !group.hide.is_empty()
+            && is_hidden(group.hide[group.number_of(position as u32) as usize], self.kind)
+        {
             return;
         }
         match &group.items[position] {
-            Item::Shape(shape, transform) => {
-                let (ray, factor) = match transform {
-                    None => (local.ray, 1.0),
-                    Some(transform) => match local.ray.into_local(transform) {
-                        None => return,
-                        Some(inside) => inside,
-                    },
-                };
-                let inside = Local { ray, per_world: local.per_world * factor, instance: local.instance };
-                if let Some(meet) = shape.meet(&ray, self.limit * inside.per_world) {
-                    let part = Csg::part_number(&meet);
-                    let id = PrimitiveId { instance: local.instance, shape: number(), part };
-                    self.offer(id, position as u32, meet, &inside);
-                }
+            Item::Shape(shape, None) => self.meet(shape, group, position, local),
+            Item::Shape(shape, Some(transform)) => {
+                let Some((ray, factor)) = local.ray.into_local(transform) else { return };
+                self.meet(
+                    shape,
+                    group,
+                    position,
+                    &Local { ray, per_world: local.per_world * factor, ..*local },
+                );
             }
             Item::Instance(instance) => {
                 let (ray, factor) = match &instance.transform {
@@ -131,6 +129,18 @@ impl<'w> Query<'w> {
         }
     }
 
+    /// A shape of a group, in its own space.
+    #[inline]
+    fn meet(&mut self, shape: &Shape, group: &Group, position: usize, inside: &Local) {
+        if let Some(meet) = shape.meet(&inside.ray, self.limit * inside.per_world) {
+            let part = Csg::part_number(&meet);
+            let number = group.number_of(position as u32);
+            let id = PrimitiveId { instance: inside.instance, shape: number, part };
+            self.offer(id, position as u32, meet, inside);
+        }
+    }
+
+    #[inline]
     fn offer(&mut self, id: PrimitiveId, position: u32, meet: Meet, local: &Local) {
         let t = meet.t / local.per_world;
         let better = self.found.is_none_or(|best| t < best.t || (t == best.t && id < best.id));

@@ -73,6 +73,7 @@ pub struct Scattered {
 
 impl Bsdf {
     /// The material where a ray met it. The world is only asked where a bump map needs its neighbourhood.
+    #[inline]
     pub fn at(world: &World, hit: &Hit<'_>, ray: &Ray) -> Sampled<Bsdf> {
         if let Some(fault) = hit.fault {
             return Err(fault);
@@ -151,11 +152,19 @@ impl Bsdf {
     }
 
     /// True where light that comes from somewhere in particular is sent on: where lights need to be asked at all.
+    #[inline]
     pub fn has_base(&self) -> bool {
         self.diffuse != Rgb::ZERO || self.specular != Rgb::ZERO
     }
 
+    /// True where a ray goes on, mirrored or through the surface.
+    #[inline]
+    pub fn goes_on(&self) -> bool {
+        self.is_transmissive() || !matches!(self.mirror, Mirror::None)
+    }
+
     /// True where the mirror is a lobe with a width.
+    #[inline]
     pub fn is_glossy(&self) -> bool {
         self.roughness > 0.0 && !matches!(self.mirror, Mirror::None)
     }
@@ -163,6 +172,7 @@ impl Bsdf {
     /// The base times the cosine of `wi` to the normal: what is sent on of the irradiance from `wi`, per steradian. 0 from
     /// below either normal; what the difference of the two would cut off at once fades out (Chiang, Li & Burley, *Taming the
     /// Shadow Terminator*, 2019).
+    #[inline]
     pub fn base(&self, wi: DVec3) -> Rgb {
         let lit = self.lit(wi);
         if lit <= 0.0 {
@@ -172,13 +182,20 @@ impl Bsdf {
         if self.specular != Rgb::ZERO {
             sent += self.specular * lobes::specular(self.lobe, self.exponent, self.normal, self.wo, wi);
         }
-        (Rgb::ONE - self.mirror_share(self.wo.dot(self.normal))) * sent * lit
+        match self.mirror {
+            Mirror::None => sent * lit,
+            _ => (Rgb::ONE - self.mirror_share(self.wo.dot(self.normal))) * sent * lit,
+        }
     }
 
     /// The mirror as a lobe, times the cosine; 0 where it is smooth and so has no width.
+    #[inline]
     pub fn gloss(&self, wi: DVec3) -> Rgb {
+        if !self.is_glossy() {
+            return Rgb::ZERO;
+        }
         let lit = self.lit(wi);
-        if lit <= 0.0 || !self.is_glossy() {
+        if lit <= 0.0 {
             return Rgb::ZERO;
         }
         let half = (self.wo + wi).normalize_or(self.normal);
@@ -230,6 +247,7 @@ impl Bsdf {
     }
 
     /// True where light is let through the surface, and not only past it.
+    #[inline]
     pub fn is_transmissive(&self) -> bool {
         self.transmit != Rgb::ZERO
     }
@@ -253,6 +271,7 @@ impl Bsdf {
     }
 
     /// The cosine of `wi` to the shading normal, faded out toward the geometric horizon where the two normals differ.
+    #[inline]
     fn lit(&self, wi: DVec3) -> f64 {
         let (above, cosine) = (wi.dot(self.geometric), wi.dot(self.normal));
         if !(above > 0.0 && cosine > 0.0) {

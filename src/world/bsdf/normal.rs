@@ -41,7 +41,8 @@ pub(super) fn bent(world: &World, hit: &Hit<'_>, ray: &Ray, at: &TexturePoint) -
 /// A map's blue leaves the surface, its red goes along growing u, its green along n × that.
 fn mapped(map: &Texture, hit: &Hit<'_>, at: &TexturePoint) -> Sampled<DVec3> {
     let c = texture::data(map, at)? * 2.0 - DVec3::ONE;
-    let n = hit.tangent * c.x + hit.normal.cross(hit.tangent) * c.y + hit.normal * c.z;
+    let tangent = hit.tangent();
+    let n = tangent * c.x + hit.normal.cross(tangent) * c.y + hit.normal * c.z;
     Ok(n.normalize_or(hit.normal))
 }
 
@@ -58,7 +59,8 @@ fn bumped(
     let height = texture::number(bump, at)?;
     let step = hit.t * ray.direction.length() * BUMP_STEP;
     let mut slope = DVec3::ZERO;
-    for along in [hit.tangent, hit.geometric_normal.cross(hit.tangent).normalize_or_zero()] {
+    let tangent = hit.tangent();
+    for along in [tangent, hit.geometric_normal.cross(tangent).normalize_or_zero()] {
         slope += along * slope_along(bump, world, hit, ray, height, along * step)?;
     }
     Ok((normal - slope).normalize_or(normal))

@@ -73,6 +73,7 @@ pub enum LightEnd {
 
 impl LightSample {
     /// The ray from a surface that nothing may meet if the light is to arrive.
+    #[inline]
     pub fn shadow_ray(&self, hit: &Hit<'_>) -> Ray {
         match &self.end {
             LightEnd::Point(p) => hit.spawn_to(*p),
@@ -148,6 +149,7 @@ impl Light {
     }
 
     /// True for a light that no ray meets by chance: point, spot and sun.
+    #[inline]
     pub fn is_delta(&self) -> bool {
         match self.source {
             Source::Point { .. } | Source::Spot { .. } | Source::Sun { .. } => true,
@@ -157,6 +159,7 @@ impl Light {
 
     /// Light toward a point from a place of this light chosen by `u` in (0, 1)². `normal` is the unit normal of the receiving
     /// surface on the side that is lit. None where no light can come that way.
+    #[inline]
     pub fn sample(&self, at: DVec3, normal: DVec3, u: DVec2) -> Option<LightSample> {
         match &self.source {
             Source::Point { position, intensity } => self.by_point(at, *position, |_| *intensity),
@@ -175,6 +178,7 @@ impl Light {
         }
     }
 
+    #[inline]
     fn by_point(&self, at: DVec3, position: DVec3, intensity: impl Fn(DVec3) -> Rgb) -> Option<LightSample> {
         let to = position - at;
         let squared = to.length_squared();

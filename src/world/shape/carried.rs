@@ -8,6 +8,7 @@ use glam::DVec3;
 /// A surface through transforms, the outermost first. Its error grows by the rounding on the way up and by what comes of going
 /// down the same way again, which the next ray will do: that part is measured, since composed inverses are inverses only up to the
 /// condition of the map.
+#[inline]
 pub fn carried<'t>(surface: &Surface, transforms: impl Iterator<Item = &'t Affine> + Clone) -> Surface {
     let mut all = transforms.clone();
     let Some(first) = all.next() else { return *surface };

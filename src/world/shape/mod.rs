@@ -137,6 +137,7 @@ pub enum Shape {
 
 impl Shape {
     /// The nearest meeting in (0, limit].
+    #[inline]
     pub fn meet(&self, ray: &LocalRay, limit: f64) -> Option<Meet> {
         match self {
             Shape::Sphere(s) => s.meet(ray, limit),
@@ -187,6 +188,7 @@ impl Shape {
     }
 
     /// The surface where a ray met it.
+    #[inline]
     pub fn surface(&self, ray: &LocalRay, meet: &Meet) -> Surface {
         match self {
             Shape::Sphere(s) => s.surface(ray, meet),

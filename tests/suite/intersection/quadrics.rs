@@ -269,7 +269,7 @@ fn every_solid_has_outward_normals_and_points_on_its_surface() {
                 assert!(hit.geometric_normal.dot(toward) < 1e-9, "shape {i}: inward");
                 let seen = origin + toward * hit.t;
                 assert!((seen - hit.point).length() < 1e-12, "shape {i}: {}", (seen - hit.point).length());
-                assert!(hit.normal.dot(hit.tangent).abs() < 1e-12 && hit.tangent.is_normalized());
+                assert!(hit.normal.dot(hit.tangent()).abs() < 1e-12 && hit.tangent().is_normalized());
                 assert!(hit.uv.min_element() >= -1e-12 && hit.uv.max_element() <= 1.0 + 1e-12, "{}", hit.uv);
             }
         }
