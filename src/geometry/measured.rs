@@ -76,7 +76,7 @@ impl<P: Point> Measured<P> {
     }
 
     /// γ(t). Errors: outside the domain.
-    #[inline]
+    #[inline(always)]
     pub fn at(&self, t: f64) -> Result<P, CurveError> {
         match &self.made {
             Made::Spline(curve) => curve.at(t),

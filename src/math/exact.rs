@@ -133,9 +133,12 @@ pub fn dot(a: DVec3, b: DVec3) -> f64 {
     sum_of_products([(a.x, b.x), (a.y, b.y), (a.z, b.z)])
 }
 
-/// a % b, in the same bits. By a power of two, as most divisors in a loop are, without a loop over the bits of the quotient:
+/// a % b, in the same bits. What is smaller than its divisor is its own remainder. By a power of two, as most divisors in a loop are, without a loop over the bits of the quotient:
 /// dividing by it and taking the whole quotients away rounds nowhere.
 pub fn remainder(a: f64, b: f64) -> f64 {
+    if a.abs() < b.abs() {
+        return a;
+    }
     let quotient = a / b;
     let is_power = b.is_normal() && power_of_two(exponent(b)) == b.abs();
     if is_power && quotient.is_finite() { (a - quotient.trunc() * b).copysign(a) } else { a % b }

@@ -48,7 +48,7 @@ impl<P: Point> Curve<P> {
     /// From Bézier points of each piece.
     pub(super) fn assemble(knots: &[f64], bezier: Vec<[Dd<P>; 4]>, closed: bool, form: Form<P>) -> Self {
         let pieces = knots.windows(2).zip(bezier).map(|(w, b)| Piece::new(w[0], w[1], b)).collect();
-        Curve { pieces, closed, form }
+        Curve::of(pieces, closed, form)
     }
 
     /// Bézier pieces that share end points: 3n + 1 points, closed 3n.

@@ -16,7 +16,7 @@ impl<P: Point> Curve<P> {
     /// An open curve of these pieces, its form that of Bézier.
     fn of_pieces(pieces: Vec<Piece<P>>) -> Self {
         let form = bezier_form(&pieces, false);
-        Curve { pieces, closed: false, form }
+        Curve::of(pieces, false, form)
     }
 
     /// The curve up to t and from t on, each over its part of the parameter. They meet in the same bits, and give this curve's
@@ -54,7 +54,7 @@ impl<P: Point> Curve<P> {
         let turned = |p: &Piece<P>| p.reversed(mirror(p.end()), mirror(p.start()));
         let pieces: Vec<_> = self.pieces.iter().rev().map(turned).collect();
         let form = bezier_form(&pieces, self.closed);
-        Curve { pieces, closed: self.closed, form }
+        Curve::of(pieces, self.closed, form)
     }
 
     /// The same curve, bit for bit, its points those of another basis: shared between pieces by the basis's own stride where
@@ -71,7 +71,7 @@ impl<P: Point> Curve<P> {
             .map(|piece| basis.from_bezier(piece.exact_points()).map(|c| c.map(Dd::value)))
             .collect();
         let form = chain_form(*basis, &fours.ok_or(CurveError::NoInverse)?, self.closed);
-        Ok(Curve { pieces: self.pieces.clone(), closed: self.closed, form })
+        Ok(Curve { form, ..self.clone() })
     }
 
     /// True where each piece starts where the one before it ends.

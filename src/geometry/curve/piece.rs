@@ -27,11 +27,13 @@ impl<P: Point> Piece<P> {
     }
 
     /// First parameter.
+    #[inline]
     pub fn start(&self) -> f64 {
         self.start
     }
 
     /// Last parameter.
+    #[inline]
     pub fn end(&self) -> f64 {
         self.end
     }
@@ -80,6 +82,13 @@ impl<P: Point> Piece<P> {
                 return value;
             }
         }
+        self.at_by_triangle(t)
+    }
+
+    /// The same by de Casteljau's triangle, which serves any t.
+    #[cold]
+    #[inline(never)]
+    fn at_by_triangle(&self, t: f64) -> P {
         let local = self.local(t);
         compensated(&self.bezier, |_| local).hi
     }
@@ -92,14 +101,16 @@ impl<P: Point> Piece<P> {
         }
         let from_start = t - self.start <= self.end - t;
         let way = if from_start { Dd::difference(t, self.start) } else { Dd::difference(self.end, t) };
-        Nearer { from_start, distance: way.times(self.per_width) }
+        // The product by 1 is the factor, to the bit: breakpoints one apart are common.
+        let distance = if self.per_width == Dd::from(1.0) { way } else { way.times(self.per_width) };
+        Nearer { from_start, distance }
     }
 
     /// γ(t) by another method than the default, from rounded Bézier points.
     pub fn at_by(&self, method: Method, t: f64) -> P {
         match method {
             Method::FromEnds => self.at(t),
-            Method::Compensated => compensated(&self.bezier, |_| self.local(t)).hi,
+            Method::Compensated => self.at_by_triangle(t),
             Method::Horner
             | Method::Bernstein
             | Method::DeCasteljau

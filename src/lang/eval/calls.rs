@@ -8,7 +8,7 @@ use crate::lang::builtins;
 use crate::lang::coerce::shown;
 use crate::lang::members::{self, Ask, Form, Member, curves};
 use crate::lang::resolve::program::{
-    Access, Argument, CallBuiltin, CallFunction, CallMethod, CallValue, Expr, FunctionBody, FunctionId,
+    Access, Argument, CallBuiltin, CallFunction, CallMethod, CallValue, FunctionBody, FunctionId,
 };
 use crate::lang::table::{Arguments, Builtin, BuiltinBody, Context, Outcome, Reported};
 use crate::lang::value::Value;
@@ -34,14 +34,10 @@ impl<'p> Evaluator<'p> {
 
     pub(super) fn call_builtin(&mut self, call: &'p CallBuiltin, span: Span) -> Outcome {
         if let (BuiltinBody::Number2(f), [(0, a), (1, b)]) = (&call.builtin.body, &call.arguments[..]) {
-            let (a, b) = (self.expr(a)?, self.expr(b)?);
-            if let (&Value::Number(x), &Value::Number(y)) = (&a, &b) {
-                let result = f(x, y);
-                if result.is_finite() {
-                    return Ok(Value::Number(result));
-                }
-            }
-            return self.call_table(call.builtin, &[a, b], &call.spans, span);
+            return match self.number_of_two(call, *f, (a, b), span) {
+                Some(x) => Ok(Value::Number(x)),
+                None => self.spilled(),
+            };
         }
         let mut values = call.defaults.clone();
         let mut outcome = Ok(());
@@ -133,12 +129,10 @@ impl<'p> Evaluator<'p> {
     }
 
     pub(super) fn call_value(&mut self, call: &'p CallValue, span: Span) -> Outcome {
-        let callee = self.expr(&call.callee);
-        if let (Ok(Value::Curve(curve)), [Argument { name: None, value: argument }]) =
-            (&callee, &call.arguments[..])
-        {
-            return self.call_curve(curve, argument, span);
+        if let Some(point) = self.point_of_call(call, span) {
+            return self.outcome_of(point);
         }
+        let callee = self.expr(&call.callee);
         if let Ok(value) = &callee
             && let Some(member) = members::call_of(value)
         {
@@ -161,18 +155,16 @@ impl<'p> Evaluator<'p> {
         }
     }
 
-    /// A curve at a number, without the ceremony of members: loops do it by the million.
-    fn call_curve(&mut self, curve: &AnyCurve, argument: &'p Expr, span: Span) -> Outcome {
-        let given = match self.number(argument) {
-            Some(t) => match curves::point_at(curve, t) {
-                Ok(point) => return Ok(point),
-                Err(_) => Value::Number(t),
-            },
-            None => self.spilled()?,
-        };
+    /// A curve at what its call was given.
+    pub(super) fn call_curve(&mut self, curve: &AnyCurve, given: Value, place: Span, span: Span) -> Outcome {
+        if let Value::Number(t) = given
+            && let Ok(point) = curves::point_at(curve, t)
+        {
+            return Ok(point);
+        }
         let value = Value::Curve(curve.clone());
         let member = members::call_of(&value).expect("curves are called");
-        let arguments = Arguments { values: &[given], spans: &[argument.span], span };
+        let arguments = Arguments { values: &[given], spans: &[place], span };
         (member.body)(self, &Ask { member, value: &value, arguments: &arguments })
     }
 

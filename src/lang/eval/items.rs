@@ -1,5 +1,6 @@
 //! Items: they bind names, produce properties and nodes, and decide what runs next.
 
+use super::plain::Plain;
 use super::slots::{Captured, Closure, Slot};
 use super::{Around, Evaluator, Flow, Produced, Said};
 use crate::diag::{Code, Diagnostic, Span};
@@ -122,18 +123,21 @@ impl<'p> Evaluator<'p> {
     }
 
     fn assign(&mut self, access: Access, value: &'p Expr) -> Outcome<()> {
-        let value = match self.number(value) {
-            Some(x) => {
-                if let Access::Local(_) | Access::Global(_) = access
-                    && let Slot::Value(Value::Number(old)) = self.slot(access)
-                {
+        let value = self.plain_in_place_of(access, value);
+        if let Access::Local(_) | Access::Global(_) = access {
+            match (value, self.slot(access)) {
+                (Plain::Number(x), Slot::Value(Value::Number(old))) => {
                     *old = x;
                     return Ok(());
                 }
-                Ok(Value::Number(x))
+                (Plain::Vector(v), Slot::Value(Value::Vector3(old))) => {
+                    *old = v;
+                    return Ok(());
+                }
+                _ => {}
             }
-            None => self.spilled(),
-        };
+        }
+        let value = self.outcome_of(value);
         let outcome = value.as_ref().map(|_| ()).map_err(|e| *e);
         let value = value.map_or(Slot::Poison, Slot::Value);
         match access {
@@ -254,7 +258,10 @@ impl<'p> Evaluator<'p> {
             self.turn(span)?;
             n_done += 1;
             let slot = self.base + turns.slot as usize;
-            self.stack[slot] = Slot::Value(value);
+            match (&mut self.stack[slot], value) {
+                (Slot::Value(Value::Number(old)), Value::Number(x)) => *old = x,
+                (old, value) => *old = Slot::Value(value),
+            }
             if self.turn_of(&turns.body, out, &mut failing)? == Flow::Return {
                 return Ok(Flow::Return);
             }

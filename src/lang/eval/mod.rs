@@ -15,6 +15,7 @@ mod items;
 mod nested;
 mod numbers;
 pub mod operators;
+mod plain;
 mod report;
 pub mod slots;
 mod undo;

@@ -3,14 +3,16 @@
 
 use super::Evaluator;
 use super::operators;
+use super::plain::Plain;
 use super::slots::Slot;
 use crate::diag::Span;
-use crate::lang::resolve::program::{Access, Arithmetic, Expr, ExprKind};
-use crate::lang::table::{Builtin, Context, Outcome, Reported};
+use crate::lang::resolve::program::{Access, Arithmetic, CallBuiltin, Expr, ExprKind};
+use crate::lang::table::{Builtin, BuiltinBody, Context, Outcome, Reported};
 use crate::lang::value::Value;
 
 impl<'p> Evaluator<'p> {
     /// An expression's number; none where it is another value or failed, which then is in `spilled`.
+    #[inline]
     pub(super) fn number(&mut self, e: &'p Expr) -> Option<f64> {
         match &e.kind {
             ExprKind::Number(x) => Some(*x),
@@ -18,6 +20,12 @@ impl<'p> Evaluator<'p> {
                 Some(Slot::Value(Value::Number(x))) => Some(*x),
                 _ => self.other(e),
             },
+            _ => self.number_of_compound(e),
+        }
+    }
+
+    fn number_of_compound(&mut self, e: &'p Expr) -> Option<f64> {
+        match &e.kind {
             ExprKind::Arithmetic(op, operands) => self.number_of_arithmetic(*op, operands, e.span),
             ExprKind::CallNumber(builtin, f, argument) => self.number_of_call(builtin, *f, argument, e.span),
             ExprKind::Negate(operand) => match self.number(operand) {
@@ -36,12 +44,16 @@ impl<'p> Evaluator<'p> {
                 },
                 _ => self.other(e),
             },
+            ExprKind::CallBuiltin(call) => match (&call.builtin.body, &call.arguments[..]) {
+                (BuiltinBody::Number2(f), [(0, a), (1, b)]) => self.number_of_two(call, *f, (a, b), e.span),
+                _ => self.other(e),
+            },
             _ => self.other(e),
         }
     }
 
     #[inline]
-    fn slot_of(&self, access: Access) -> Option<&Slot> {
+    pub(super) fn slot_of(&self, access: Access) -> Option<&Slot> {
         match access {
             Access::Local(slot) => Some(&self.stack[self.base + slot as usize]),
             Access::Global(slot) => Some(&self.standing.globals[slot as usize]),
@@ -72,13 +84,20 @@ impl<'p> Evaluator<'p> {
     #[inline(never)]
     fn mixed_left(&mut self, op: Arithmetic, right: &'p Expr, span: Span) -> Option<f64> {
         let a = self.spilled();
+        if let Ok(Value::Vector3(u)) = a {
+            return match self.plain_arithmetic(op, Plain::Vector(u), right, span) {
+                Plain::Number(x) => Some(x),
+                Plain::Vector(v) => self.spill(Ok(Value::Vector3(v))),
+                Plain::Spilled => None,
+            };
+        }
         let b = self.expr(right);
         self.mixed(op, a, b, span)
     }
 
     /// Arithmetic on anything.
     #[inline(never)]
-    fn mixed(&mut self, op: Arithmetic, a: Outcome, b: Outcome, span: Span) -> Option<f64> {
+    pub(super) fn mixed(&mut self, op: Arithmetic, a: Outcome, b: Outcome, span: Span) -> Option<f64> {
         let joined = match (a, b) {
             (Ok(a), Ok(b)) => operators::arithmetic(op, &a, &b, span).map_err(|said| self.fail(*said)),
             (Err(reported), _) | (_, Err(reported)) => Err(reported),
@@ -108,6 +127,37 @@ impl<'p> Evaluator<'p> {
         self.spill(called)
     }
 
+    /// A call of a function of two numbers; the second argument is not evaluated where the first failed.
+    #[inline(never)]
+    pub(super) fn number_of_two(
+        &mut self,
+        call: &'p CallBuiltin,
+        f: fn(f64, f64) -> f64,
+        (a, b): (&'p Expr, &'p Expr),
+        span: Span,
+    ) -> Option<f64> {
+        let x = self.number(a);
+        let first = match x {
+            Some(x) => Ok(Value::Number(x)),
+            None => self.spilled(),
+        };
+        let first = match first {
+            Ok(first) => first,
+            Err(reported) => return self.spill(Err(reported)),
+        };
+        let y = self.number(b);
+        if let (Some(x), Some(y)) = (x, y) {
+            let result = f(x, y);
+            if result.is_finite() {
+                return Some(result);
+            }
+        }
+        let second = y.map_or_else(|| self.spilled(), |y| Ok(Value::Number(y)));
+        let called =
+            second.and_then(|second| self.call_table(call.builtin, &[first, second], &call.spans, span));
+        self.spill(called)
+    }
+
     /// An expression without a fast path.
     #[inline(never)]
     fn other(&mut self, e: &'p Expr) -> Option<f64> {
@@ -116,7 +166,7 @@ impl<'p> Evaluator<'p> {
     }
 
     /// The number, or none with the outcome set aside.
-    fn spill(&mut self, value: Outcome) -> Option<f64> {
+    pub(super) fn spill(&mut self, value: Outcome) -> Option<f64> {
         if let Ok(Value::Number(x)) = value {
             return Some(x);
         }

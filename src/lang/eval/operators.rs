@@ -28,6 +28,18 @@ pub fn number(op: Arithmetic, a: f64, b: f64) -> f64 {
     }
 }
 
+/// One operation on two vectors, component by component. May be infinite or NaN.
+#[inline]
+pub fn vector3(op: Arithmetic, u: DVec3, v: DVec3) -> DVec3 {
+    match op {
+        Arithmetic::Add => u + v,
+        Arithmetic::Subtract => u - v,
+        Arithmetic::Multiply => u * v,
+        Arithmetic::Divide => u / v,
+        Arithmetic::Remainder | Arithmetic::Power => zip3(u, v, |x, y| number(op, x, y)),
+    }
+}
+
 /// aᵇ: by repeated products where b is a small whole number.
 pub fn power(a: f64, b: f64) -> f64 {
     if b == b.trunc() && b.abs() <= WHOLE_POWER {
@@ -43,9 +55,9 @@ pub fn arithmetic(op: Arithmetic, a: &Value, b: &Value, span: Span) -> Result<Va
     let f = |x, y| number(op, x, y);
     let value = match (a, b) {
         (Value::Number(x), Value::Number(y)) => Value::Number(f(*x, *y)),
-        (Value::Vector3(u), Value::Vector3(v)) => Value::Vector3(zip3(*u, *v, f)),
-        (Value::Vector3(u), Value::Number(y)) => Value::Vector3(zip3(*u, DVec3::splat(*y), f)),
-        (Value::Number(x), Value::Vector3(v)) => Value::Vector3(zip3(DVec3::splat(*x), *v, f)),
+        (Value::Vector3(u), Value::Vector3(v)) => Value::Vector3(vector3(op, *u, *v)),
+        (Value::Vector3(u), Value::Number(y)) => Value::Vector3(vector3(op, *u, DVec3::splat(*y))),
+        (Value::Number(x), Value::Vector3(v)) => Value::Vector3(vector3(op, DVec3::splat(*x), *v)),
         (Value::Vector2(u), Value::Vector2(v)) => Value::Vector2(zip2(*u, *v, f)),
         (Value::Vector2(u), Value::Number(y)) => Value::Vector2(zip2(*u, DVec2::splat(*y), f)),
         (Value::Number(x), Value::Vector2(v)) => Value::Vector2(zip2(DVec2::splat(*x), *v, f)),

@@ -91,7 +91,9 @@ impl<'a> Resolver<'a> {
     }
 
     fn call_value(&mut self, callee: Expr, call: &'a ast::Call) -> ExprKind {
-        ExprKind::CallValue(Box::new(CallValue { callee, arguments: self.arguments(call) }))
+        let arguments = self.arguments(call);
+        let steady = arguments.iter().all(|argument| argument.value.is_steady());
+        ExprKind::CallValue(Box::new(CallValue { callee, arguments, steady }))
     }
 
     fn call_function(&mut self, access: Access, id: FunctionId, call: &'a ast::Call) -> ExprKind {
