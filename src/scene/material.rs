@@ -44,6 +44,11 @@ impl Material {
         static DEFAULT: Layers = Layers::DEFAULT;
         self.layers.as_deref().unwrap_or(&DEFAULT)
     }
+
+    /// Whether a map turns the normal, for which the surface's tangent is needed.
+    pub fn bends_normal(&self) -> bool {
+        self.layers.as_deref().is_some_and(|layers| layers.normal_map.is_some() || layers.bump.is_some())
+    }
 }
 
 /// What a material may have above its diffuse base. The meaning of each is in the reference, one for all tracers.

@@ -84,6 +84,7 @@ impl World {
         for transform in transforms.clone() {
             local = local.into_local(transform)?.0;
         }
+        let material = &self.materials[self.material_on(&path, shape, candidate) as usize];
         let (surface, local_point) = match (shape, path.aggregate) {
             (Some(Shape::Csg(csg)), _) => {
                 let part = csg.surface(&local, &candidate.meet);
@@ -94,12 +95,11 @@ impl World {
                 (surface, surface.point)
             }
             (None, Aggregate::Mesh(mesh)) => {
-                let surface = mesh.shape.surface(candidate.id.part, &candidate.meet);
+                let surface = mesh.shape.surface(candidate.id.part, &candidate.meet, material.bends_normal());
                 (surface, surface.point)
             }
             (None, Aggregate::Group(_)) => return None,
         };
-        let material = &self.materials[self.material_on(&path, shape, candidate) as usize];
         let world = carried(&surface, transforms);
         let normal = on_side_of(world.normal, world.geometric_normal);
         Some(Hit {

@@ -83,7 +83,7 @@ impl Solid {
     fn surface(&self, ray: &LocalRay, meet: &Meet) -> Surface {
         match self {
             Solid::Shape(shape) => shape.surface(ray, meet),
-            Solid::Mesh(mesh, _) => mesh.surface(meet.face, meet),
+            Solid::Mesh(mesh, _) => mesh.surface(meet.face, meet, true),
         }
     }
 

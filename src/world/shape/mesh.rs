@@ -62,15 +62,15 @@ impl MeshShape {
         self.tree.order()[position]
     }
 
-    /// The surface of a triangle of the mesh.
-    pub fn surface(&self, triangle: u32, meet: &Meet) -> Surface {
+    /// The surface of a triangle of the mesh, with its tangent where its normal is to be `bent` by a map.
+    pub fn surface(&self, triangle: u32, meet: &Meet, bent: bool) -> Surface {
         let mesh = &self.mesh;
         let indices = mesh.triangles[triangle as usize];
         let data = Corners {
             normals: (!mesh.normals.is_empty()).then(|| indices.map(|i| mesh.normals[i as usize])),
             uvs: (!mesh.uvs.is_empty()).then(|| indices.map(|i| mesh.uvs[i as usize])),
         };
-        surface_of(corners(mesh, indices), data, meet)
+        surface_of(corners(mesh, indices), data, meet, bent)
     }
 }
 

@@ -151,8 +151,9 @@ pub struct Corners {
 }
 
 /// The surface of a triangle at barycentric coordinates. The geometric normal follows the corner normals where there are any
-/// (files wind their faces carelessly more often than they turn normals inside out), else the winding.
-pub fn surface_of(corners: [DVec3; 3], data: Corners, meet: &Meet) -> Surface {
+/// (files wind their faces carelessly more often than they turn normals inside out), else the winding. Its tangent is only found where the
+/// normal is to be `bent` by a map, else it is 0.
+pub fn surface_of(corners: [DVec3; 3], data: Corners, meet: &Meet, bent: bool) -> Surface {
     let [a, b, c] = corners;
     let weights = [1.0 - meet.a - meet.b, meet.a, meet.b];
     let point = a * weights[0] + b * weights[1] + c * weights[2];
@@ -169,7 +170,7 @@ pub fn surface_of(corners: [DVec3; 3], data: Corners, meet: &Meet) -> Surface {
         error,
         geometric_normal,
         normal,
-        tangent: tangent_of(corners, uvs),
+        tangent: if bent { tangent_of(corners, uvs) } else { DVec3::ZERO },
         uv: uvs[0] * weights[0] + uvs[1] * weights[1] + uvs[2] * weights[2],
     }
 }
@@ -204,7 +205,7 @@ impl Triangle {
     }
 
     pub(super) fn surface(&self, meet: &Meet) -> Surface {
-        surface_of(self.0.vertices, Corners { normals: self.0.normals, uvs: self.0.uvs }, meet)
+        surface_of(self.0.vertices, Corners { normals: self.0.normals, uvs: self.0.uvs }, meet, true)
     }
 
     pub(super) fn bounds(&self) -> Aabb {
