@@ -52,10 +52,12 @@ impl Factor {
         Factor { value, high, low }
     }
 
-    /// `a · self` and what its rounding left out. Exact. Dekker.
+    /// `a · self` and what its rounding left out. Exact. Dekker; `a` is cut into 27 bits and 26, which takes half as long as by Veltkamp and
+    /// leaves every product with the halves of this factor, 26 bits each, exact.
     #[inline(always)]
     pub fn times<P: Point>(&self, a: P) -> (P, P) {
-        let (high, low) = split(a);
+        let high = a.truncated();
+        let low = a - high;
         let p = a * self.value;
         (p, low * self.low - (((p - high * self.high) - low * self.high) - high * self.low))
     }

@@ -28,6 +28,9 @@ pub trait Point:
     /// From its coordinates, called for each axis in order.
     fn from_coordinates(coordinate: impl FnMut(usize) -> f64) -> Self;
 
+    /// Each coordinate without its last 26 bits: 27 of its 53 are left.
+    fn truncated(self) -> Self;
+
     /// Inner product.
     fn dot(self, other: Self) -> f64;
 
@@ -83,6 +86,11 @@ pub trait Point:
 /// Squares above this lose nothing to underflow: 2⁻⁹⁶⁰, so that a sum of three keeps all 53 bits.
 const SMALLEST_SAFE_SQUARE: f64 = 1.026e-289;
 
+#[inline(always)]
+fn truncated(x: f64) -> f64 {
+    f64::from_bits(x.to_bits() & !((1 << 26) - 1))
+}
+
 impl Point for f64 {
     const DIMENSION: usize = 1;
 
@@ -92,6 +100,11 @@ impl Point for f64 {
 
     fn from_coordinates(mut coordinate: impl FnMut(usize) -> f64) -> Self {
         coordinate(0)
+    }
+
+    #[inline(always)]
+    fn truncated(self) -> Self {
+        truncated(self)
     }
 
     fn dot(self, other: Self) -> f64 {
@@ -111,6 +124,11 @@ impl Point for DVec2 {
         DVec2::new(x, coordinate(1))
     }
 
+    #[inline(always)]
+    fn truncated(self) -> Self {
+        self.map(truncated)
+    }
+
     fn dot(self, other: Self) -> f64 {
         DVec2::dot(self, other)
     }
@@ -127,6 +145,11 @@ impl Point for DVec3 {
         let x = coordinate(0);
         let y = coordinate(1);
         DVec3::new(x, y, coordinate(2))
+    }
+
+    #[inline(always)]
+    fn truncated(self) -> Self {
+        self.map(truncated)
     }
 
     fn dot(self, other: Self) -> f64 {

@@ -144,13 +144,18 @@ impl<P: Point> Curve<P> {
     }
 
     /// The piece that holds t; at a seam the one after it. Outside the domain the first or the last.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn piece_at(&self, t: f64) -> &Piece<P> {
         // Where the breakpoints are as far apart as each other, this is it.
         let guess = &self.pieces[(((t - self.domain.0) * self.per_unit) as usize).min(self.pieces.len() - 1)];
         if t >= guess.start() && t < guess.end() {
             return guess;
         }
+        self.piece_by_search(t)
+    }
+
+    #[inline(never)]
+    fn piece_by_search(&self, t: f64) -> &Piece<P> {
         let after = self.pieces.partition_point(|piece| piece.start() <= t);
         &self.pieces[after.saturating_sub(1)]
     }

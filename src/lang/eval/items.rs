@@ -10,7 +10,7 @@ use crate::lang::resolve::program::{
     While,
 };
 use crate::lang::table::{Context, Outcome, Reported};
-use crate::lang::value::{Given, Value, Values};
+use crate::lang::value::{Given, RangeValue, Value, Values};
 use crate::scene::{Node, Object, Shape};
 use std::rc::Rc;
 use std::sync::Arc;
@@ -28,7 +28,12 @@ impl<'p> Evaluator<'p> {
             self.make_functions(functions);
         }
         for item in &body.items {
-            match self.item(item, out) {
+            let done = match &item.kind {
+                // What loops are made of, kept apart from the frame that all items together need.
+                ItemKind::Assign(access, value) => self.assign(*access, value).map(|()| Flow::On),
+                _ => self.item(item, out),
+            };
+            match done {
                 Ok(Flow::On) => {}
                 Ok(Flow::Return) => return Flow::Return,
                 Err(Reported) => out.failed = true,
@@ -252,15 +257,37 @@ impl<'p> Evaluator<'p> {
 
     fn for_item(&mut self, turns: &'p For, span: Span, out: &mut Produced) -> Outcome<Flow> {
         let list = self.expr(&turns.list)?;
+        if let Value::Range(range) = &list {
+            return self.for_range(turns, range, span, out);
+        }
         let mut failing = 0;
         let mut n_done = 0;
         while let Some(value) = self.element_of(&list, n_done, turns.list.span)? {
             self.turn(span)?;
             n_done += 1;
             let slot = self.base + turns.slot as usize;
-            match (&mut self.stack[slot], value) {
-                (Slot::Value(Value::Number(old)), Value::Number(x)) => *old = x,
-                (old, value) => *old = Slot::Value(value),
+            self.stack[slot] = Slot::Value(value);
+            if self.turn_of(&turns.body, out, &mut failing)? == Flow::Return {
+                return Ok(Flow::Return);
+            }
+        }
+        Ok(Flow::On)
+    }
+
+    fn for_range(
+        &mut self,
+        turns: &'p For,
+        range: &RangeValue,
+        span: Span,
+        out: &mut Produced,
+    ) -> Outcome<Flow> {
+        let mut failing = 0;
+        for i in 0..range.len {
+            self.turn(span)?;
+            let x = range.element(i);
+            match &mut self.stack[self.base + turns.slot as usize] {
+                Slot::Value(Value::Number(old)) => *old = x,
+                slot => *slot = Slot::Value(Value::Number(x)),
             }
             if self.turn_of(&turns.body, out, &mut failing)? == Flow::Return {
                 return Ok(Flow::Return);

@@ -12,7 +12,7 @@ use crate::lang::value::Value;
 
 impl<'p> Evaluator<'p> {
     /// An expression's number; none where it is another value or failed, which then is in `spilled`.
-    #[inline]
+    #[inline(always)]
     pub(super) fn number(&mut self, e: &'p Expr) -> Option<f64> {
         match &e.kind {
             ExprKind::Number(x) => Some(*x),

@@ -31,7 +31,7 @@ impl<'p> Evaluator<'p> {
     }
 
     /// An expression's number or vector.
-    #[inline]
+    #[inline(always)]
     pub(super) fn plain(&mut self, e: &'p Expr) -> Plain {
         if let ExprKind::Name(access) = &e.kind {
             match self.slot_of(*access) {
@@ -87,6 +87,12 @@ impl<'p> Evaluator<'p> {
             return self.plain_mixed(op, a, b, span);
         }
         let b = self.plain(right);
+        if let (Plain::Vector(u), Plain::Vector(v)) = (a, b) {
+            let joined = operators::vector3(op, u, v);
+            if joined.is_finite() {
+                return Plain::Vector(joined);
+            }
+        }
         let joined = joined(op, a, b);
         if joined.is_finite() {
             return joined;
