@@ -110,6 +110,23 @@ fn a_sign_tight_to_the_word_that_a_placement_begins_with_stays_there() {
 }
 
 #[test]
+fn what_is_too_deep_is_told_at_a_whole_character() {
+    for open in ["\u{e9}(", "\u{e9}[", "\u{e9} { "] {
+        survives(&open.repeat(1000));
+        let close = if open.contains('(') {
+            ")"
+        } else if open.contains('[') {
+            "]"
+        } else {
+            "}"
+        };
+        let deep = format!("a {}1{}", open.repeat(1000), close.repeat(1000));
+        survives(&deep);
+        assert!(faults(&deep).iter().any(|fault| fault.starts_with("E0003")), "{open}");
+    }
+}
+
+#[test]
 fn a_blank_of_another_writing_is_a_fault_and_no_crash() {
     for blank in ["\u{2000}", "\u{a0}", "\u{205f}", "\u{3000}"] {
         assert_eq!(faults(blank), [format!("E0001 «{blank}»")]);

@@ -145,7 +145,7 @@ impl<'a> Builder<'a> {
         build: impl FnOnce(&mut Self) -> T,
     ) -> Option<T> {
         if self.depth + levels > self.origin.limits.depth {
-            self.report(too_deep(span, self.origin.limits.depth));
+            self.report(self.origin.too_deep(span));
             return None;
         }
         self.depth += levels;
@@ -376,14 +376,6 @@ pub(super) fn is_kind(word: &str) -> bool {
 /// Whether a word may not be a name.
 pub(super) fn is_reserved(word: &str) -> bool {
     is_kind(word) || KEYWORDS.contains(&word)
-}
-
-/// E0003 at a place.
-pub(super) fn too_deep(span: Span, limit: usize) -> Diagnostic {
-    let span = Span { end: span.end.min(span.start + 1), ..span };
-    Diagnostic::new(Code::TooDeep, span, format!("this is nested more than {limit} levels deep"))
-        .label("brackets and operators nest past the limit here")
-        .hint("name parts of it with `let`, or raise the limit with `--limit nesting=N`")
 }
 
 fn reserved(ident: &Ident) -> Diagnostic {

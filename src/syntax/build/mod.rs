@@ -6,7 +6,7 @@
 use rayon::prelude::*;
 
 use super::ast;
-use crate::diag::{Diagnostic, SourceId, Span};
+use crate::diag::{Code, Diagnostic, SourceId, Span};
 
 mod diagnose;
 mod expressions;
@@ -132,6 +132,13 @@ struct Origin<'a> {
 }
 
 impl Origin<'_> {
+    /// E0003 at the first character of a span.
+    fn too_deep(&self, span: Span) -> Diagnostic {
+        let covered = self.text.get(span.start as usize..span.end as usize).unwrap_or_default();
+        let first = covered.chars().next().map_or(0, char::len_utf8) as u32;
+        too_deep(Span { end: span.start + first, ..span }, self.limits.depth)
+    }
+
     /// The span, in the person's text, of the bytes `start..end` of the text that is parsed.
     fn span(&self, start: usize, end: usize) -> Span {
         if self.insertions.is_empty() {
@@ -220,4 +227,11 @@ fn parse_run(
         from = to;
     }
     (items, found)
+}
+
+/// E0003, that a place is nested too deeply.
+fn too_deep(span: Span, limit: usize) -> Diagnostic {
+    Diagnostic::new(Code::TooDeep, span, format!("this is nested more than {limit} levels deep"))
+        .label("brackets and operators nest past the limit here")
+        .hint("name parts of it with `let`, or raise the limit with `--limit nesting=N`")
 }

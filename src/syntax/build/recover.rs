@@ -8,7 +8,7 @@ use std::sync::Mutex;
 use pest::Parser;
 
 use super::diagnose::{self, Fault};
-use super::items::{Builder, Failure, is_reserved, near_kind, parse_struck, too_deep};
+use super::items::{Builder, Failure, is_reserved, near_kind, parse_struck};
 use super::lexer::{Pieces, Sort, continues_word};
 use super::outline::{Event, Events, outline};
 use super::{Grammar, Origin, Rule};
@@ -73,7 +73,7 @@ pub(super) fn expression(text: &str, origin: &Origin<'_>) -> (Option<Expr>, Vec<
 
 fn unreadable(failure: &Failure, base: usize, text: &str, origin: &Origin<'_>) -> Diagnostic {
     if failure.too_deep {
-        return too_deep(origin.span(base, base + text.len()), origin.limits.depth);
+        return origin.too_deep(origin.span(base, base + text.len()));
     }
     let at = floor(text, failure.at);
     let end = text[at..].chars().next().map_or(at, |c| at + c.len_utf8());
@@ -156,7 +156,7 @@ impl Mender<'_> {
                     if failure.too_deep || self.found.len() >= MOST_FAULTS {
                         let whole = self.origin.span(self.base + item, self.base + end);
                         if failure.too_deep {
-                            self.found.push(too_deep(whole, self.origin.limits.depth));
+                            self.found.push(self.origin.too_deep(whole));
                         }
                         self.strike(item, end, None);
                         return;

@@ -2,8 +2,8 @@
 //! in which they do. What is put in is remembered, so that places lead back to the person's own text and nothing is said
 //! twice.
 
-use super::items::too_deep;
 use super::outline::{Event, Events, closer};
+use super::too_deep;
 use crate::diag::{Code, Diagnostic, SourceId, Span};
 
 /// A text whose brackets close.
