@@ -153,17 +153,22 @@ impl World {
     }
 
     /// What is left of the light along a shadow ray. `passes` says what share each surface on the way lets through (0 for most);
-    /// it is asked in order until nothing is left.
+    /// it is asked in order until nothing is left. Beyond each the ray is aimed anew at where it ends, so that what it is moved by to be
+    /// clear of a surface never brings it into the light itself.
     pub fn transmittance(&self, ray: &Ray, passes: impl Fn(&Hit<'_>) -> Rgb) -> Transmittance {
+        let end = ray.t_max.is_finite().then(|| ray.origin + ray.direction * ray.t_max);
         let (mut left, mut ray) = (Rgb::ONE, *ray);
         while let Some(hit) = self.closest(&ray) {
             left *= passes(&hit);
-            let next = hit.spawn(ray.direction, ray.kind);
-            let t_max = ray.t_max - hit.t;
-            if left == Rgb::ZERO || t_max <= 0.0 || next.origin == ray.origin {
+            let next = match end {
+                Some(end) => hit.spawn_to(end),
+                None => hit.spawn(ray.direction, ray.kind),
+            };
+            let goes_on = next.direction.dot(ray.direction) > 0.0 && next.origin != ray.origin;
+            if left == Rgb::ZERO || !goes_on {
                 break;
             }
-            ray = Ray { t_max, ..next };
+            ray = Ray { kind: ray.kind, ..next };
         }
         left
     }

@@ -239,6 +239,27 @@ fn glass_takes_light_by_beers_law() {
 }
 
 #[test]
+fn light_that_passes_glass_is_not_shadowed_by_its_own_source() {
+    for far in [0.0, 1e3, 1e6] {
+        let by = DVec3::splat(far);
+        let lit = |x: f64, between: Option<Node>| {
+            let lamp = disc(by + DVec3::new(-1.0, 3.0, -1.0), DVec3::new(0.3, -1.0, 0.3).normalize(), 0.5);
+            let mut nodes = vec![object(plane(Y, far), &diffuse(1.0)), area(lamp, 5.0, 64)];
+            nodes.extend(between);
+            seen(&world(nodes), by + DVec3::new(x, 0.25, x), by + DVec3::new(x, 0.0, x))
+        };
+        let clear = layered(0.0, |l| {
+            (l.transmit, l.ior, l.fresnel) = (Texture::number(1.0), Texture::number(1.0), Fresnel::None);
+        });
+        for x in [-0.4, 0.0, 0.3, 0.7] {
+            let ball = object(sphere(by + DVec3::new(0.0, 1.5, 0.0), 1.0), &clear);
+            let (bare, through) = (lit(x, None), lit(x, Some(ball)));
+            assert!(bare > 0.05 && (through - bare).abs() <= 1e-6 * bare, "{far} {x}: {bare} {through}");
+        }
+    }
+}
+
+#[test]
 fn glass_casts_a_clear_shadow_and_a_wall_a_black_one() {
     let lit = |between: Option<Node>| {
         let mut nodes = vec![object(plane(Y, 0.0), &diffuse(1.0)), sun(-Y, PI)];
