@@ -399,6 +399,8 @@ mod tests {
         assert!(error(nineteen, &[1.0, 1e30, 1e44]) <= 2e-16, "{nineteen:?}");
         let twenty = from_roots([1.0, 1e7, 1e7, 1e14]);
         assert!(error(twenty, &[1.0, 1e7, 1e14]) <= 1e-12, "{twenty:?}");
+        let twenty_one = from_roots([1.0, 1e7, 1e7, 1e15]);
+        assert!(error(twenty_one, &[1.0, 1e7, 1e15]) <= 1e-12, "{twenty_one:?}");
         let twenty_two = from_roots([1.0, 10.0, 1e152, 1e154]);
         assert!(error(twenty_two, &[1.0, 10.0, 1e152, 1e154]) <= 4e-16, "{twenty_two:?}");
         let twenty_three = quartic(1.0, 1.0, 1.0, 3.0 / 8.0, 1e-3);

@@ -264,6 +264,14 @@ fn a_ray_that_meets_placements_without_end_is_an_error() {
 }
 
 #[test]
+fn a_plane_lies_at_its_offset_whatever_the_length_of_its_normal() {
+    for plane in ["offset 1", "through y", "through <7, 1, -9>"] {
+        let text = format!("assert(trace(plane {{ normal <0, 2, 0>  {plane} }}, <3, 5, 4>, -y)[0].t == 4)");
+        assert_eq!(told(&evaluate(&text)), "", "{plane}");
+    }
+}
+
+#[test]
 fn a_raised_guard_of_calls_gets_a_stack_that_holds_them() {
     let limits = Limits { calls: 200_000, ..Limits::default() };
     let text = "fn f(n) = n == 0 ? 0 : 1 + f(n - 1)\nassert(f(150000) == 150000)";

@@ -20,8 +20,9 @@ pub(super) struct Nested {
 /// Groups inside groups, at most: later stages follow them by recursion, on stacks that are not sized for it.
 const DEEPEST_GROUP: u32 = 1000;
 
-/// What each shape of solids put together takes once they are made ready for rays: groups are copied into them.
-const PART_BYTES: u64 = 256;
+/// What each shape of solids put together takes once they are made ready for rays, since groups are copied into them: 660 bytes were
+/// measured of half a million balls with a transform each, here rounded up.
+const PART_BYTES: u64 = 1 << 10;
 
 impl Nested {
     const SHAPE: Nested = Nested { depth: 0, placements: 1 };

@@ -4,7 +4,7 @@ use super::{Random, bumpy_ball, mesh, ray, world};
 use glam::{DVec2, DVec3};
 use ogee::geometry::mesh::Mesh;
 use ogee::math::exact::Double;
-use ogee::scene::{Shape, Triangle};
+use ogee::scene::{Rect, Shape, Triangle};
 
 const OFFSETS: [DVec3; 3] =
     [DVec3::ZERO, DVec3::new(148_376.0, 1234.0, -223_423.0), DVec3::new(1e6, 1e6, 1e6)];
@@ -82,6 +82,29 @@ fn a_sliver_keeps_its_coordinates() {
         let hit = world.closest(&ray(point + DVec3::Z, -DVec3::Z)).expect("inside");
         assert!((hit.uv - DVec2::new(0.3, 0.4)).abs().max_element() <= 1e-15, "{height}: {}", hit.uv);
     }
+}
+
+#[test]
+fn a_parallelogram_is_met_where_its_two_triangles_are() {
+    let mut random = Random(8);
+    let mut met = 0;
+    for case in 0..3000 {
+        let (center, a, b) = (random.vector() * 1e3, random.vector(), random.vector());
+        let rect = world(Shape::Rect(Box::new(Rect { center, a, b })));
+        let [p, q, r, s] = [-a - b, a - b, a + b, b - a].map(|corner| center + corner);
+        let halves = [world(triangle(p, q, r)), world(triangle(p, r, s))];
+        let aim = center + a * random.signed() * 0.95 + b * random.signed() * 0.95;
+        let origin = center + random.unit() * 10.0;
+        let start = ray(origin, (aim - origin).normalize());
+        let by_halves = halves.iter().find_map(|half| half.closest(&start));
+        let (Some(whole), Some(half)) = (rect.closest(&start), by_halves) else { continue };
+        // The corners are rounded at the centre's size; along the ray that shows by the cosine.
+        let cosine = whole.geometric_normal.dot(start.direction).abs();
+        let ulp = center.abs().max_element().next_up() - center.abs().max_element();
+        assert!((whole.t - half.t).abs() * cosine <= 4.0 * ulp, "case {case}: {} {}", whole.t, half.t);
+        met += 1;
+    }
+    assert!(met > 2900, "{met}");
 }
 
 #[test]
