@@ -1,7 +1,7 @@
 //! Lobes with a width: Phong's, Blinn's, and the microfacets of GGX. Values are BRDFs (1/sr) or densities; cosines are
 //! clamped, so that nothing is lit from behind and no power of a negative number is taken.
 
-use crate::math::elementary::{powf, sin_cos};
+use crate::math::elementary::{powf, powi, sin_cos};
 use crate::scene::Lobe;
 use crate::world::light::{frame, to_frame};
 use glam::{DVec2, DVec3};
@@ -14,7 +14,16 @@ pub fn specular(lobe: Lobe, q: f64, n: DVec3, wo: DVec3, wi: DVec3) -> f64 {
         Lobe::Phong => (super::fresnel::reflect(wo, n).dot(wi), (q + 2.0) / TAU),
         Lobe::Blinn => (n.dot((wo + wi).normalize_or_zero()), (q + 8.0) / (8.0 * PI)),
     };
-    if cosine > 0.0 { norm * powf(cosine.min(1.0), q) } else { 0.0 }
+    if cosine > 0.0 { norm * power(cosine.min(1.0), q) } else { 0.0 }
+}
+
+/// Exponents above this are no longer taken for whole numbers; nobody writes them.
+const MOST_WHOLE: f64 = 65536.0;
+
+/// A cosine to the power q. Whole exponents, as nearly all are, by repeated squares: q roundings are no more than the cosine's own
+/// rounding comes to after the power.
+fn power(cosine: f64, q: f64) -> f64 {
+    if q <= MOST_WHOLE && q == q.trunc() { powi(cosine, q as i32) } else { powf(cosine, q) }
 }
 
 /// Microfacets of the GGX distribution (Trowbridge & Reitz) with height-correlated Smith shadowing, about a unit normal.
