@@ -75,8 +75,17 @@ impl<P: Point> Measured<P> {
         }
     }
 
-    /// γ(t). Errors: outside the domain.
+    /// γ(t) of cubic pieces inside the domain; none where [`Measured::at`] has more to look at.
     #[inline(always)]
+    pub fn at_inside(&self, t: f64) -> Option<P> {
+        match &self.made {
+            Made::Spline(curve) => curve.at_inside(t),
+            Made::Function(_) => None,
+        }
+    }
+
+    /// γ(t). Errors: outside the domain.
+    #[inline]
     pub fn at(&self, t: f64) -> Result<P, CurveError> {
         match &self.made {
             Made::Spline(curve) => curve.at(t),

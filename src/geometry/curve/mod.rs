@@ -161,10 +161,17 @@ impl<P: Point> Curve<P> {
     }
 
     /// γ(t). Error below half an ulp of the value, and a hair, for any t of the domain.
-    #[inline(always)]
+    #[inline]
     pub fn at(&self, t: f64) -> Result<P, CurveError> {
         let t = self.parameter(t)?;
         Ok(self.piece_at(t).at(t))
+    }
+
+    /// The same inside the domain; none outside it.
+    #[inline(always)]
+    pub fn at_inside(&self, t: f64) -> Option<P> {
+        let (start, end) = self.domain;
+        (t >= start && t <= end).then(|| self.piece_at(t).at(t))
     }
 
     /// γ(t) by another method than the default.

@@ -128,7 +128,7 @@ impl<'p> Evaluator<'p> {
     }
 
     /// A call of a function of two numbers; the second argument is not evaluated where the first failed.
-    #[inline(never)]
+    #[inline]
     pub(super) fn number_of_two(
         &mut self,
         call: &'p CallBuiltin,
@@ -136,23 +136,46 @@ impl<'p> Evaluator<'p> {
         (a, b): (&'p Expr, &'p Expr),
         span: Span,
     ) -> Option<f64> {
-        let x = self.number(a);
-        let first = match x {
-            Some(x) => Ok(Value::Number(x)),
-            None => self.spilled(),
+        let Some(x) = self.number(a) else {
+            let first = self.spilled();
+            return self.value_of_two(call, first, b, span);
         };
-        let first = match first {
-            Ok(first) => first,
-            Err(reported) => return self.spill(Err(reported)),
+        let Some(y) = self.number(b) else {
+            let second = self.spilled();
+            return self.value_of_both(call, Value::Number(x), second, span);
         };
-        let y = self.number(b);
-        if let (Some(x), Some(y)) = (x, y) {
-            let result = f(x, y);
-            if result.is_finite() {
-                return Some(result);
-            }
+        let result = f(x, y);
+        if result.is_finite() {
+            return Some(result);
         }
-        let second = y.map_or_else(|| self.spilled(), |y| Ok(Value::Number(y)));
+        self.value_of_both(call, Value::Number(x), Ok(Value::Number(y)), span)
+    }
+
+    #[inline(never)]
+    fn value_of_two(
+        &mut self,
+        call: &'p CallBuiltin,
+        first: Outcome,
+        b: &'p Expr,
+        span: Span,
+    ) -> Option<f64> {
+        match first {
+            Ok(first) => {
+                let second = self.expr(b);
+                self.value_of_both(call, first, second, span)
+            }
+            Err(reported) => self.spill(Err(reported)),
+        }
+    }
+
+    #[inline(never)]
+    fn value_of_both(
+        &mut self,
+        call: &'p CallBuiltin,
+        first: Value,
+        second: Outcome,
+        span: Span,
+    ) -> Option<f64> {
         let called =
             second.and_then(|second| self.call_table(call.builtin, &[first, second], &call.spans, span));
         self.spill(called)

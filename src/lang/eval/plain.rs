@@ -130,8 +130,8 @@ impl<'p> Evaluator<'p> {
         // Still the same one, as the argument could not assign to it.
         let Some(Slot::Value(Value::Curve(curve))) = self.slot_of(*access) else { return None };
         let point = match (given, curve) {
-            (Some(t), AnyCurve::Space(c)) => c.at(t).ok().map(Plain::Vector),
-            (Some(t), AnyCurve::Numbers(c)) => c.at(t).ok().map(Plain::Number),
+            (Some(t), AnyCurve::Space(c)) => c.at_inside(t).map(Plain::Vector),
+            (Some(t), AnyCurve::Numbers(c)) => c.at_inside(t).map(Plain::Number),
             (Some(_), AnyCurve::Plane(_)) | (None, _) => None,
         };
         if point.is_some() {
