@@ -73,6 +73,9 @@ codes! {
     UnknownWord = "E0309", "a word is not one of those the property takes";
     EnergyGain = "W0310", "a material returns more light than it gets";
     NotSolid = "E0311", "a surface that is no solid is put together with solids";
+    OutsideLimits = "E0312", "an angle is outside its joint's limits";
+    UnknownJoint = "E0313", "a skeleton has no joint or tip of this name";
+    NotReached = "W0314", "a target is not reached";
     // 4: evaluation and its guards
     AssertFailed = "E0401", "an assertion does not hold";
     UserError = "E0402", "the scene calls `error`";
@@ -92,6 +95,7 @@ codes! {
     MissingMaterialFile = "W0504", "a mesh's material file or texture is missing";
     BadImage = "E0505", "an image cannot be read";
     BadPatch = "E0507", "a patch file cannot be used";
+    BadMotion = "E0508", "a motion capture file cannot be used";
     // 6: the scene as a whole
     NoCamera = "E0601", "the scene has no camera";
     NoLight = "W0602", "the scene has no light";

@@ -117,7 +117,7 @@ pub fn unknown_property(kind: &Kind, name: &str, span: Span) -> Diagnostic {
 /// A property that takes many values also takes one list of them, and so does one that takes several, unless it takes a list.
 fn flatten_list(property: &Property, given: &mut Given) {
     let [(Value::List(list), span)] = &given.values[..] else { return };
-    let takes_list = property.takes.iter().any(|row| matches!(row, [Type::List | Type::Any | Type::Unbuilt]));
+    let takes_list = property.takes.iter().any(|row| matches!(row, [Type::List | Type::Any]));
     let several = property.takes.iter().any(|row| row.len() > 1);
     if property.many || (several && !takes_list) {
         let (list, span) = (list.clone(), *span);

@@ -54,7 +54,10 @@ pub fn fits(ctx: &dyn Context, kind: Type, value: &Value) -> bool {
                 || super::members::call_of(value).is_some()
         }
         Type::List => matches!(value, Value::List(_) | Value::Range(_)),
-        Type::Any | Type::Unbuilt => true,
+        Type::Skeleton => matches!(value, Value::Skeleton(_)),
+        Type::Pose => matches!(value, Value::Pose(_)),
+        Type::Part(kind) => matches!(value, Value::Part(part) if part.kind() == kind),
+        Type::Any => true,
     }
 }
 
@@ -261,6 +264,9 @@ pub fn shown(value: &Value) -> String {
         Value::Camera(_) => "a camera".into(),
         Value::Render(_) => "a render block".into(),
         Value::Curve(curve) => a_curve_of(curve.dimension()).into(),
+        Value::Skeleton(_) => "a skeleton".into(),
+        Value::Pose(_) => "a pose".into(),
+        Value::Part(part) => format!("the {} `{}`", part.kind(), part.name),
         Value::Record(record) => record.name.into(),
         Value::Transform(_) => "a transform".into(),
         Value::Fragment(_) => "a group of properties".into(),
@@ -370,7 +376,10 @@ pub fn words(kind: Type) -> String {
         Type::Curve(CurveOf::Space) => a_curve_of(3).into(),
         Type::Function => "a function".into(),
         Type::List => "a list".into(),
-        Type::Any | Type::Unbuilt => "a value".into(),
+        Type::Skeleton => "a skeleton".into(),
+        Type::Pose => "a pose".into(),
+        Type::Part(kind) => format!("a {kind}"),
+        Type::Any => "a value".into(),
     }
 }
 
@@ -422,7 +431,10 @@ pub fn sample_use(property: &Property) -> String {
 fn sample(kind: Type) -> String {
     match kind {
         Type::Number { min, max } | Type::NumberTexture { min, max } => number(1f64.clamp(min, max)),
-        Type::Positive | Type::Any | Type::Unbuilt => "1".into(),
+        Type::Positive | Type::Any => "1".into(),
+        Type::Skeleton => "arm".into(),
+        Type::Pose => "touch".into(),
+        Type::Part(_) => "elbow { hinge z }".into(),
         Type::Factor => "2".into(),
         Type::Factors => "<2, 1, 2>".into(),
         Type::Integer { min } => format!("{}", min.max(1)),

@@ -111,6 +111,9 @@ fn write(out: &mut String, value: &Value, style: Style, depth: usize) {
         | Value::Render(_)
         | Value::Curve(_)
         | Value::Transform(_)
+        | Value::Skeleton(_)
+        | Value::Pose(_)
+        | Value::Part(_)
         | Value::Fragment(_) => out.push_str(&crate::lang::coerce::shown(value)),
     }
 }

@@ -9,7 +9,7 @@ use super::table::{Builtin, Kind, Property, Role};
 use std::fmt::Write;
 
 /// The chapters of prose: the name by which `page` finds one, the title, the text.
-const PROSE: [(&str, &str, &str); 10] = [
+const PROSE: [(&str, &str, &str); 11] = [
     ("language", "The language", include_str!("reference/language.md")),
     ("expressions", "Expressions", include_str!("reference/expressions.md")),
     ("cameras", "Cameras and pictures", include_str!("reference/camera.md")),
@@ -18,6 +18,7 @@ const PROSE: [(&str, &str, &str); 10] = [
     ("patterns", "Patterns", include_str!("reference/patterns.md")),
     ("objects", "Objects", include_str!("reference/objects.md")),
     ("curves", "Curves", include_str!("reference/curves.md")),
+    ("skeletons", "Skeletons", include_str!("reference/skeletons.md")),
     ("unbuilt", "What is not built yet", include_str!("reference/unbuilt.md")),
     ("decisions", "Decisions", include_str!("reference/decisions.md")),
 ];
@@ -30,6 +31,7 @@ fn kinds_of_chapter(chapter: &str) -> Vec<&'static Kind> {
         "lights" => named(&["light"]),
         "materials" => named(&["material"]),
         "curves" => named(&["spline"]),
+        "skeletons" => named(&["skeleton", "joint", "tip", "pose"]),
         "objects" => {
             kinds::ALL.iter().copied().filter(|k| k.role == Role::Object && k.build.is_some()).collect()
         }
@@ -43,6 +45,7 @@ fn families_of_chapter(chapter: &str) -> impl Iterator<Item = &'static Family> {
     let named: &[&str] = match chapter {
         "curves" => &["curve", "transform"],
         "objects" => &["patch"],
+        "skeletons" => &["pose"],
         _ => &[],
     };
     FAMILIES.iter().copied().filter(move |family| named.contains(&family.name))

@@ -260,10 +260,14 @@ pub enum Type {
     Function,
     /// A list of anything.
     List,
+    /// A skeleton.
+    Skeleton,
+    /// A pose.
+    Pose,
+    /// A part of a skeleton, by the word of its kind.
+    Part(&'static str),
     /// Anything.
     Any,
-    /// A value of a part of the language that is not built yet.
-    Unbuilt,
 }
 
 /// What a curve runs through.
@@ -408,6 +412,8 @@ pub struct Parameter {
     pub takes: &'static str,
     /// Its default as written; none must be given.
     pub default: Option<&'static str>,
+    /// It takes a name of the author's own, which may be written bare.
+    pub bare: bool,
 }
 
 /// How many components a function of numbers and vectors gives, from how many each argument has (1 to 4). None where some
@@ -417,7 +423,12 @@ pub type ShapeOf = fn(&[usize]) -> Option<usize>;
 impl Parameter {
     /// A parameter that must be given.
     pub const fn new(name: &'static str, takes: &'static str) -> Parameter {
-        Parameter { name, takes, default: None }
+        Parameter { name, takes, default: None, bare: false }
+    }
+
+    /// One that takes a name of the author's own, written bare.
+    pub const fn bare(self) -> Parameter {
+        Parameter { bare: true, ..self }
     }
 
     /// One that need not.

@@ -1,10 +1,11 @@
 //! The values of the language. A value is 32 bytes or less and cheap to clone: numbers and short vectors are stored in place.
 
+use super::kinds::Part;
 use super::table::{Builtin, Property};
 use crate::diag::Span;
 use crate::geometry::any_curve::AnyCurve;
 use crate::math::Affine;
-use crate::scene::{Camera, Light, Material, Object, Pattern, RenderSettings};
+use crate::scene::{Camera, Light, Material, Object, Pattern, Pose, RenderSettings, Rig};
 use glam::{DVec2, DVec3, DVec4};
 use smallvec::SmallVec;
 use std::rc::Rc;
@@ -47,6 +48,12 @@ pub enum Value {
     Render(Arc<RenderSettings>),
     /// A curve.
     Curve(AnyCurve),
+    /// A skeleton.
+    Skeleton(Arc<Rig>),
+    /// A pose.
+    Pose(Arc<Pose>),
+    /// A joint or tip that waits for its skeleton.
+    Part(Rc<Part>),
     /// Named parts: what a question about a shape gives.
     Record(Rc<Record>),
     /// An affine map.

@@ -6,6 +6,7 @@ pub mod camera;
 pub mod light;
 pub mod material;
 pub mod object;
+pub mod rig;
 pub mod settings;
 mod solid;
 pub mod surface;
@@ -19,6 +20,7 @@ pub use material::{
 pub use object::{
     Cone, Csg, CsgOp, Disc, Hide, Implicit, MeshSource, Node, Object, Rect, Shape, Torus, Triangle,
 };
+pub use rig::{Figure, Motion, Pose, Reach, Rig, Stance};
 pub use settings::{Accelerator, RenderSettings, ToneMap, TracerKind};
 pub use solid::{open_mesh, solid_fault};
 pub use surface::{
@@ -37,4 +39,6 @@ pub struct Scene {
     pub cameras: Vec<Camera>,
     /// What the `render` block says.
     pub render: RenderSettings,
+    /// The skeletons and poses that it names, at top level.
+    pub figures: Vec<Figure>,
 }

@@ -319,15 +319,10 @@ fn answer(
 
 /// What stands behind a dot after a value.
 fn members(value: &Value) -> Vec<String> {
-    let names: Vec<&str> = match (value, lang::members::family(value)) {
-        (Value::Record(record), _) => record.parts.iter().map(|(name, _)| *name).collect(),
-        (_, Some(family)) => complete::names_of(family).collect(),
-        (_, None) => match lang::builtins::components(value) {
-            Some((_, n)) if n > 1 => complete::LETTERS.into_iter().take(n).collect(),
-            _ => Vec::new(),
-        },
-    };
-    names.into_iter().map(str::to_owned).collect()
+    match lang::builtins::components(value) {
+        Some((_, n)) if n > 1 => complete::LETTERS.into_iter().take(n).map(str::to_owned).collect(),
+        _ => lang::members::names_of(value),
+    }
 }
 
 /// The sort of a value in words; a function with its parameters.
@@ -349,6 +344,7 @@ fn sort_of(value: &Value, program: &Program) -> String {
 fn place(scene: &mut Scene, more: Scene) {
     scene.nodes.extend(more.nodes);
     scene.cameras.extend(more.cameras);
+    scene.figures.extend(more.figures);
     if more.render.span.is_some() {
         scene.render = more.render;
     }

@@ -1,6 +1,8 @@
 //! A scene as it was evaluated, printed: stable text for snapshots and eyes, JSON for programs. Both come from one tree of
 //! `Entry`s, so that they cannot disagree.
 
+mod figures;
+
 use crate::diag::{SourceMap, Span};
 use crate::geometry::path::Path;
 use crate::math::{Affine, Point};
@@ -87,7 +89,8 @@ fn entries(scene: &Scene) -> Vec<Entry> {
     let render = (scene.render != RenderSettings::default()).then(|| render(&scene.render));
     let mut left = MOST_INSIDE;
     let nodes = scene.nodes.iter().map(|top| node(top, &mut left));
-    scene.cameras.iter().map(camera).chain(render).chain(nodes).collect()
+    let figures = scene.figures.iter().map(figures::figure);
+    scene.cameras.iter().map(camera).chain(render).chain(figures).chain(nodes).collect()
 }
 
 /// Entries inside groups that are printed at most: groups placed in groups in groups have no end that anybody reads.

@@ -17,6 +17,7 @@ mod radiometry;
 mod repl;
 mod report;
 mod run;
+mod skeletons;
 mod slips;
 mod stage;
 mod surfaces;

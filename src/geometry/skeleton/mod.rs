@@ -220,6 +220,19 @@ impl Skeleton {
         &self.motions
     }
 
+    /// A joint's coordinates of one sort, as its author gives them: in order, those of a ball, of a free joint and of channels by their
+    /// axes x, y, z.
+    pub fn coordinates_of(&self, joint: usize, turning: Turning) -> Vec<usize> {
+        let joint = &self.joints[joint];
+        let mut motions: Vec<&Motion> =
+            self.motions[joint.motions()].iter().filter(|m| m.turning == turning).collect();
+        match joint.freedom {
+            Freedom::Channels(_) => motions.sort_by_key(|m| m.axis.abs().max_position()),
+            _ => motions.sort_by_key(|m| m.coordinate),
+        }
+        motions.into_iter().map(|m| m.coordinate).collect()
+    }
+
     /// The coordinates at rest.
     pub fn rest(&self) -> &[f64] {
         &self.rest

@@ -25,8 +25,8 @@ impl<'c> Compiler<'c> {
         if members::find(value, &call.name, Form::Method).is_some() {
             return self.member(value, &call.name, Form::Method, (&call.arguments, values), from_name);
         }
-        if members::find(value, &call.name, Form::Field).is_some()
-            && let Symbol::Known(field) = self.field(&base, &call.name, call.name_span)?
+        if let Some(field) = members::field(self.host, value, &call.name, call.name_span)
+            && let field = field?
             && members::call_of(&field).is_some()
         {
             return self.member(&field, "", Form::Call, (&call.arguments, values), from_name);

@@ -6,7 +6,7 @@ use crate::lang::kinds;
 use crate::lang::resolve::program::{self, BlockItem, Fate, With};
 use crate::lang::table::{Block, Context, Kind, Outcome, Reported, Role};
 use crate::lang::value::{Fragment, Given, Value};
-use crate::scene::{Node, RenderSettings};
+use crate::scene::{Figure, Node, RenderSettings, Stance};
 use smallvec::smallvec;
 use std::rc::Rc;
 
@@ -17,7 +17,10 @@ impl<'p> Evaluator<'p> {
         let value = self.block(block);
         let (name, property) = match &item.fate {
             Fate::Given(name, property) => (name, property),
-            Fate::Named => return value.map(|_| ()),
+            Fate::Named => {
+                self.name_figure(block, &value);
+                return value.map(|_| ());
+            }
             Fate::Placed => return self.place_block(value?, block, out),
         };
         match value {
@@ -33,6 +36,18 @@ impl<'p> Evaluator<'p> {
             }
         }
         Ok(())
+    }
+
+    /// Keeps a skeleton or pose that is named at the top level, for who looks at the scene.
+    fn name_figure(&mut self, block: &program::Block, value: &Outcome) {
+        let stance = match value {
+            Ok(Value::Skeleton(rig)) => Stance::Rest(rig.clone()),
+            Ok(Value::Pose(pose)) => Stance::Posed(pose.clone()),
+            _ => return,
+        };
+        if let (true, Some((name, ..))) = (self.calls.is_empty(), &block.label) {
+            self.top.figures.push(Figure { name: name.to_string(), stance });
+        }
     }
 
     fn place_block(&mut self, value: Value, block: &program::Block, out: &mut Produced) -> Outcome<()> {
@@ -71,9 +86,6 @@ impl<'p> Evaluator<'p> {
     }
 
     fn block_value(&mut self, block: &'p program::Block) -> Outcome {
-        if block.kind.role == Role::Part && block.kind.build.is_none() {
-            return Err(Reported);
-        }
         let mut out = Produced::new(Around::Braces);
         self.items(&block.body, &mut out);
         if out.failed {
@@ -96,6 +108,11 @@ impl<'p> Evaluator<'p> {
         let span = block.span;
         let nested = !block.children.is_empty();
         let value = kinds::make(self, block)?;
+        match &value {
+            Value::Skeleton(rig) => self.spend(rig.bytes() as u64, span)?,
+            Value::Pose(pose) => self.spend(pose.bytes() as u64, span)?,
+            _ => {}
+        }
         if nested {
             self.check_nesting(&value, span)?;
         }

@@ -374,9 +374,7 @@ impl<'p> Evaluator<'p> {
         if let Some(member) = members::find(&base, &call.name, Form::Method) {
             return self.call_member(member, &base, &call.arguments, from_name);
         }
-        if members::find(&base, &call.name, Form::Field).is_some()
-            && let Some(field) = members::field(self, &base, &call.name, call.name_span)
-        {
+        if let Some(field) = members::field(self, &base, &call.name, call.name_span) {
             let field = field?;
             if let Some(member) = members::call_of(&field) {
                 return self.call_member(member, &field, &call.arguments, from_name);

@@ -30,7 +30,7 @@ use super::table::{Outcome, Reported, Trace};
 use super::value::{Given, Value};
 use crate::diag::{Sink, SourceId, Span};
 use crate::scene::assets::Loader;
-use crate::scene::{Camera, Node, RenderSettings, Scene};
+use crate::scene::{Camera, Figure, Node, RenderSettings, Scene};
 use guards::Guards;
 use nested::Nested;
 use slots::{Captured, Slot};
@@ -108,7 +108,12 @@ pub fn run(run: &Run<'_>, standing: &mut Standing, sink: &mut Sink) -> Ran {
     let mut evaluator = Evaluator::new(run, std::mem::take(standing), sink);
     let (top, nodes) = evaluator.unit(UnitId(0));
     let ran = Ran {
-        scene: Scene { nodes, cameras: top.cameras, render: top.render.unwrap_or_default() },
+        scene: Scene {
+            nodes,
+            cameras: top.cameras,
+            render: top.render.unwrap_or_default(),
+            figures: top.figures,
+        },
         attempts: top.attempts,
         said: std::mem::take(&mut evaluator.said),
     };
@@ -136,6 +141,7 @@ pub fn call(
 struct Top {
     cameras: Vec<Camera>,
     render: Option<RenderSettings>,
+    figures: Vec<Figure>,
     attempts: Attempts,
 }
 

@@ -9,6 +9,7 @@ mod lights;
 mod materials;
 mod objects;
 mod read;
+mod rigs;
 mod settings;
 mod shapes;
 mod solids;
@@ -20,6 +21,7 @@ mod unbuilt;
 pub mod with;
 
 pub use objects::existing_file;
+pub use rigs::{Part, unknown_tip};
 
 use super::check;
 use super::table::{Block, Context, Kind, Outcome, Reported, Role};
@@ -56,10 +58,10 @@ pub static ALL: &[&Kind] = &[
     &solids::DIFFERENCE,
     &unbuilt::SKIN,
     &unbuilt::MODEL,
-    &unbuilt::SKELETON,
-    &unbuilt::JOINT,
-    &unbuilt::TIP,
-    &unbuilt::POSE,
+    &rigs::SKELETON,
+    &rigs::JOINT,
+    &rigs::TIP,
+    &rigs::POSE,
 ];
 
 /// The kind of this word.

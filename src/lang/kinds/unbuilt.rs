@@ -2,8 +2,6 @@
 
 use crate::lang::table::{Kind, Property, Role, Type};
 
-const ANY: &[&[Type]] = &[&[Type::Unbuilt]];
-
 const fn unbuilt(
     name: &'static str,
     doc: &'static str,
@@ -14,24 +12,17 @@ const fn unbuilt(
     Kind { name, doc, example, role, own, children: false, open: false, build: None }
 }
 
-const fn with_children(kind: Kind) -> Kind {
-    Kind { children: true, ..kind }
-}
-
-const fn open(kind: Kind) -> Kind {
-    Kind { open: true, ..kind }
-}
-
 /// A skinned surface.
 pub static SKIN: Kind = unbuilt(
     "skin",
     "A surface that bends with a skeleton.",
-    "spline limb { natural x, y, z }\nskin { surface tube { along limb  radius 0.5 }  skeleton arm  pose touch }",
+    "skeleton arm { joint elbow { hinge z  tip hand { offset <5, 0, 0> } } }\npose bent { of arm  elbow 40 }\n\
+     spline limb { natural <0, 0, 0>, <2, 0, 0>, <5, 0, 0> }\nskin { surface tube { along limb  radius 0.5 }  skeleton arm  pose bent }",
     Role::Object,
     &[
         Property::new("surface", &[&[Type::Object]], "", "any mesh-like object, in rest position").required(),
-        Property::new("skeleton", ANY, "", "the skeleton that moves it").required(),
-        Property::new("pose", ANY, "", "the pose it takes; the rest pose by default"),
+        Property::new("skeleton", &[&[Type::Skeleton]], "", "the skeleton that moves it").required(),
+        Property::new("pose", &[&[Type::Pose]], "", "the pose it takes; the rest pose by default"),
         Property::new(
             "weights",
             &[&[Type::Word(&["rigid", "smooth"])], &[Type::List], &[Type::Function]],
@@ -59,79 +50,7 @@ pub static MODEL: Kind = unbuilt(
         Property::new("file", &[&[Type::Text]], "", "a .glb or .gltf file").required(),
         Property::new("clip", &[&[Type::Text]], "", "the animation; the first by default"),
         Property::new("at", &[&[Type::NUMBER]], "0", "the moment of the clip, in seconds"),
-        Property::new("pose", ANY, "", "a pose, instead of a clip"),
+        Property::new("pose", &[&[Type::Pose]], "", "a pose, instead of a clip"),
         Property::new("show", &[&[Type::Word(&["bones"])]], "", "draws the skeleton"),
     ],
 );
-
-/// A skeleton.
-pub static SKELETON: Kind = with_children(unbuilt(
-    "skeleton",
-    "A tree of joints.",
-    "skeleton arm { joint shoulder { hinge z  joint elbow { offset <5, 0, 0>  hinge z  tip hand { offset <4, 0, 0> } } } }",
-    Role::Value,
-    &[Property::new("file", &[&[Type::Text]], "", "a .bvh file of motion capture")],
-));
-
-/// A joint.
-pub static JOINT: Kind = with_children(unbuilt(
-    "joint",
-    "A joint of a skeleton, with what it may do, its angles at rest, and the joints and tips that hang on it.",
-    "skeleton s { joint elbow { offset <5, 0, 0>  hinge z  angle 50  limits 0, 150 } }",
-    Role::Part,
-    &[
-        Property::new("offset", &[&[Type::Vector3]], "<0, 0, 0>", "from the joint above it, in scene units"),
-        Property::new("fixed", &[&[]], "", "does not move"),
-        Property::new("hinge", &[&[Type::Direction]], "", "turns about this axis"),
-        Property::new("universal", &[&[Type::Direction, Type::Direction]], "", "turns about two axes"),
-        Property::new("ball", &[&[]], "", "turns freely, by `angles`"),
-        Property::new("slide", &[&[Type::Direction]], "", "moves along this axis"),
-        Property::new("free", &[&[]], "", "moves and turns freely"),
-        Property::new("angle", &[&[Type::NUMBER]], "0", "at rest, in degrees (of a slide, in scene units)"),
-        Property::new("angles", &[&[Type::Vector3], &[Type::Vector2]], "<0, 0, 0>", "at rest, in degrees"),
-        Property::new("limits", &[&[Type::NUMBER, Type::NUMBER]], "", "least and most, in degrees"),
-    ],
-));
-
-/// The end of a chain.
-pub static TIP: Kind = unbuilt(
-    "tip",
-    "The end of a chain of joints: what reaches for things.",
-    "skeleton s { joint wrist { hinge z  tip hand { offset <1, 0, 0> } } }",
-    Role::Part,
-    &[Property::new("offset", &[&[Type::Vector3]], "<0, 0, 0>", "from its joint, in scene units")],
-);
-
-/// A pose.
-pub static POSE: Kind = open(unbuilt(
-    "pose",
-    "Angles for the joints of a skeleton, given or found by inverse kinematics. A joint's name is a property.",
-    "pose touch { of arm  reach hand, <6, 3, 0>  method dls }",
-    Role::Value,
-    &[
-        Property::new("of", ANY, "", "the skeleton").required(),
-        Property::new(
-            "reach",
-            &[&[Type::Label, Type::Vector3]],
-            "",
-            "a tip, and the point where it should be",
-        )
-        .repeats(),
-        Property::new("weight", &[&[Type::NON_NEGATIVE]], "1", "of the target before it").repeats(),
-        Property::new("toward", &[&[Type::Direction]], "", "where the tip before it should point").repeats(),
-        Property::new(
-            "method",
-            &[&[Type::Word(&["jacobian_transpose", "pseudo_inverse", "dls", "ccd"])]],
-            "dls",
-            "how the angles are found",
-        ),
-        Property::new("iterations", &[&[Type::Integer { min: 1 }]], "200", "most steps"),
-        Property::new(
-            "tolerance",
-            &[&[Type::Positive]],
-            "1e-9",
-            "distance from the target that is good enough",
-        ),
-        Property::new("at", &[&[Type::NUMBER]], "0", "the moment of motion capture, in seconds"),
-    ],
-));

@@ -24,6 +24,7 @@ pub static FAMILY: Family = Family {
     scene: "let path = spline { bezier <0, 0, 0>, <1, 0, 0>, <2, 0, 0>, <3, 0, 0>, <3, 1, 0>, <3, 2, 0>, <3, 3, 0> }\n\
             let arch = spline { bezier <0, 0, 0>, <0, 1, 0>, <2, 1, 0>, <2, 0, 0> }",
     members: MEMBERS,
+    named: None,
 };
 
 static MEMBERS: &[Member] = &[

@@ -6,6 +6,7 @@
 mod ask;
 pub mod curves;
 mod patches;
+pub mod rigs;
 #[cfg(test)]
 mod tests;
 mod transforms;
@@ -32,6 +33,18 @@ pub struct Family {
     pub scene: &'static str,
     /// The members; the call of the value itself, if it has one, is the first.
     pub members: &'static [Member],
+    /// Fields by names of the author's own: a pose's joints.
+    pub named: Option<&'static Named>,
+}
+
+/// Fields that a value has by names of its author's own.
+pub struct Named {
+    /// What has such a name, in words: "joint or tip".
+    pub what: &'static str,
+    /// The value under a name.
+    pub find: fn(&Value, &str) -> Option<Value>,
+    /// All names.
+    pub names: fn(&Value) -> Vec<String>,
 }
 
 /// How a member is written.
@@ -80,7 +93,7 @@ pub struct Sampled {
 }
 
 /// Every family.
-pub static FAMILIES: &[&Family] = &[&curves::FAMILY, &patches::FAMILY, &transforms::FAMILY];
+pub static FAMILIES: &[&Family] = &[&curves::FAMILY, &patches::FAMILY, &rigs::FAMILY, &transforms::FAMILY];
 
 impl Member {
     /// A field.
@@ -137,12 +150,28 @@ pub fn find(value: &Value, name: &str, form: Form) -> Option<&'static Member> {
     family(value)?.members.iter().find(|member| member.name == name && member.form == form)
 }
 
+/// Whether a method of this name takes a name of the author's own, which may be written bare, for an argument at this position or of
+/// this name.
+pub fn takes_bare(method: &str, position: usize, named: Option<&str>) -> bool {
+    let members = FAMILIES.iter().flat_map(|family| family.members);
+    let mut methods = members.filter(|member| member.name == method && member.form == Form::Method);
+    let is_it = |(i, p): (usize, &Parameter)| p.bare && named.map_or(i == position, |name| name == p.name);
+    methods.any(|member| member.parameters.iter().enumerate().any(is_it))
+}
+
+/// Whether some value has a member of this name.
+pub fn is_member(name: &str) -> bool {
+    FAMILIES.iter().flat_map(|family| family.members).any(|member| member.name == name)
+}
+
 /// The value of a field; none where the value has no such one.
 pub fn field(ctx: &mut dyn Context, value: &Value, name: &str, span: Span) -> Option<Outcome> {
     if let Value::Record(record) = value {
         return record.part(name).map(|part| Ok(part.clone()));
     }
-    let member = find(value, name, Form::Field)?;
+    let Some(member) = find(value, name, Form::Field) else {
+        return Some(Ok((family(value)?.named?.find)(value, name)?));
+    };
     let arguments = Arguments { values: &[], spans: &[], span };
     Some((member.body)(ctx, &Ask { member, value, arguments: &arguments }))
 }
@@ -176,21 +205,31 @@ pub fn wrong_arguments(member: &Member, value: &Value, span: Span) -> Diagnostic
     Diagnostic::new(Code::WrongArity, span, message).hint(format!("write it like `{}`", member.example.0))
 }
 
+/// The names of all members of a value: a record's parts, what its family has, and names of its author's own.
+pub fn names_of(value: &Value) -> Vec<String> {
+    if let Value::Record(record) = value {
+        return record.parts.iter().map(|(name, _)| (*name).to_owned()).collect();
+    }
+    let Some(family) = family(value) else { return Vec::new() };
+    let own = family.named.map_or(Vec::new(), |named| (named.names)(value));
+    let tabled = family.members.iter().map(|member| member.name).filter(|name| !name.is_empty());
+    own.into_iter().chain(tabled.map(str::to_owned)).collect()
+}
+
 /// What to say where a value has no such member: the other form of the name, the nearest one, or all that there are.
 pub fn unknown(value: &Value, name: &str, form: Form, span: Span) -> Diagnostic {
-    let (what, other) = match form {
-        Form::Method => (format!("method `{name}`"), Form::Field),
-        Form::Field | Form::Call => (format!("`.{name}`"), Form::Method),
+    let named = family(value).and_then(|family| family.named);
+    let (what, other) = match (form, named) {
+        (Form::Method, _) => (format!("method `{name}`"), Form::Field),
+        (Form::Field | Form::Call, Some(named)) => (format!("{} `{name}`", named.what), Form::Method),
+        (Form::Field | Form::Call, None) => (format!("`.{name}`"), Form::Method),
     };
     let said = Diagnostic::new(Code::NoSuchField, span, format!("{} has no {what}", shown(value)));
     if let Some(member) = find(value, name, other) {
         return said.hint(format!("write `{}`: {}", member.written(), member.doc));
     }
-    let names: Vec<&'static str> = match value {
-        Value::Record(record) => record.parts.iter().map(|(name, _)| *name).collect(),
-        _ => family(value).map_or(Vec::new(), |f| f.members.iter().map(|m| m.name).collect()),
-    };
-    let said = said.did_you_mean(name, names.iter().copied().filter(|n| !n.is_empty()));
+    let names = names_of(value);
+    let said = said.did_you_mean(name, names.iter().map(String::as_str));
     match family(value) {
         Some(family) if said.hints.is_empty() => {
             said.hint(format!("`ogee docs {}` lists what it has", family.name))

@@ -27,6 +27,7 @@ pub static FAMILY: Family = Family {
             <1/3, -1, 2/3>, <1/3, -1/3, -2/3>, <1/3, 1/3, -2/3>, <1/3, 1, 2/3>, \
             <1, -1, 2>, <1, -1/3, 2/3>, <1, 1/3, 2/3>, <1, 1, 2> }",
     members: MEMBERS,
+    named: None,
 };
 
 static MEMBERS: &[Member] = &[

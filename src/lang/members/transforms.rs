@@ -48,6 +48,7 @@ pub static FAMILY: Family = Family {
             inverse,
         ),
     ],
+    named: None,
 };
 
 fn transform<'a>(ask: &'a Ask<'_>) -> &'a Affine {

@@ -60,14 +60,16 @@ impl<'a> Resolver<'a> {
                 );
                 None
             }
-            (Role::Part, Place::Block(around)) if around.build.is_none() || around.open => Some(Fate::Placed),
-            (Role::Part, Place::Loose) => Some(Fate::Placed),
+            (Role::Part, Place::Block(around)) if around.property(kind.name).is_some() => {
+                Some(Fate::Given(self.word(kind.name), around.property(kind.name)))
+            }
+            (Role::Part, Place::Loose) => Some(Fate::Given(self.word(kind.name), None)),
             (Role::Part, Place::Block(_) | Place::Top) => {
-                self.refuse(
-                    block,
-                    format!("`{}` is a part of a skeleton", kind.name),
-                    "put it inside the braces of a `skeleton` or of another joint",
-                );
+                let hint = match kind.name {
+                    "tip" => "put it inside the braces of a joint",
+                    _ => "put it inside the braces of a `skeleton` or of another joint",
+                };
+                self.refuse(block, format!("`{}` is a part of a skeleton", kind.name), hint);
                 None
             }
         }

@@ -7,6 +7,7 @@ use super::scope::Declared;
 use super::{Access, Meaning, Resolver};
 use crate::diag::{Code, Diagnostic, Span};
 use crate::lang::builtins;
+use crate::lang::members;
 use crate::lang::table::{Builtin, BuiltinBody};
 use crate::lang::value::Value;
 use crate::syntax::ast;
@@ -37,7 +38,7 @@ impl<'a> Resolver<'a> {
                     base: self.expr(base),
                     name: self.word(&method.name),
                     name_span: method.span,
-                    arguments: self.arguments(call),
+                    arguments: self.method_arguments(&method.name, call),
                 })),
             },
             _ => {
@@ -88,6 +89,26 @@ impl<'a> Resolver<'a> {
                 value: self.expr(&a.value),
             })
             .collect()
+    }
+
+    /// The arguments of a method: where a value's method of this name takes a name of the author's own, that stands bare.
+    fn method_arguments(&mut self, method: &str, call: &'a ast::Call) -> Vec<Argument> {
+        let mut arguments = Vec::with_capacity(call.arguments.len());
+        for (position, a) in call.arguments.iter().enumerate() {
+            let name = a.name.as_ref().map(|n| (self.word(&n.name), n.span));
+            let bare = members::takes_bare(method, position, name.as_ref().map(|(name, _)| &**name));
+            // Of a method that no value has, that is what must be said.
+            let astray = |resolver: &Self, name| !members::is_member(method) && !resolver.in_scope(name);
+            let value = match &a.value.kind {
+                ast::ExprKind::Name(name) if bare || astray(self, name) => {
+                    let word = Value::Word(self.word(name));
+                    Expr { kind: ExprKind::Constant(Box::new(word)), span: a.value.span }
+                }
+                _ => self.expr(&a.value),
+            };
+            arguments.push(Argument { name, value });
+        }
+        arguments
     }
 
     fn call_value(&mut self, callee: Expr, call: &'a ast::Call) -> ExprKind {

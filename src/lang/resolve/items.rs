@@ -309,7 +309,7 @@ impl<'a> Resolver<'a> {
             Place::Loose | Place::Top => None,
         };
         let may_be = match place {
-            Place::Block(kind) => known.is_some() || kind.open || kind.build.is_none(),
+            Place::Block(kind) => known.is_some() || kind.open,
             Place::Loose => true,
             Place::Top => false,
         };

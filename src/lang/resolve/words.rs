@@ -23,7 +23,6 @@ struct Taken {
     words: Vec<&'static str>,
     labels: bool,
     others: bool,
-    unbuilt: bool,
 }
 
 impl Taken {
@@ -32,7 +31,6 @@ impl Taken {
             match row.get(if property.many { 0 } else { index }) {
                 Some(Type::Word(words)) => self.words.extend(*words),
                 Some(Type::Label) => self.labels = true,
-                Some(Type::Unbuilt) => self.unbuilt = true,
                 Some(Type::Bool) | None => {}
                 Some(_) => self.others = true,
             }
@@ -43,10 +41,7 @@ impl Taken {
 fn taken(kind: Option<&'static Kind>, property: &str, index: usize) -> Taken {
     let mut taken = Taken::default();
     match kind {
-        Some(kind) => match kind.property(property) {
-            Some(found) => taken.add(found, index),
-            None => taken.unbuilt = kind.build.is_none(),
-        },
+        Some(kind) => kind.property(property).into_iter().for_each(|found| taken.add(found, index)),
         None => {
             kinds::ALL.iter().filter_map(|k| k.property(property)).for_each(|p| taken.add(p, index));
         }
@@ -80,13 +75,13 @@ impl<'a> Resolver<'a> {
     ) -> Expr {
         let taken = taken(kind, property, index);
         let listed_word = taken.words.contains(&name);
-        let words_only = !taken.others && !taken.unbuilt;
+        let words_only = !taken.others;
         let bare = if words_only && (listed_word || taken.labels) {
             true
         } else if self.in_scope(name) {
             false
         } else {
-            listed_word || taken.labels || taken.unbuilt || (words_only && !taken.words.is_empty())
+            listed_word || taken.labels || (words_only && !taken.words.is_empty())
         };
         if bare {
             let word: Word = self.word(name);

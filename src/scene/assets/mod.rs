@@ -4,6 +4,7 @@ pub mod bpt;
 mod cache;
 mod decode;
 pub mod image;
+pub mod mocap;
 mod mtl;
 pub mod obj;
 
