@@ -62,6 +62,10 @@ fn case_sets_are_as_hard_as_they_claim() {
         ("quadratic roots", "roots of unlike size", "b²−4ac", 1e6),
         ("ray and sphere", "grazing", "b²−4ac", 1e5),
         ("ray and plane", "grazing", "plain", 1e5),
+        ("reach", "out of reach", "plain pseudo-inverse", 0.1),
+        ("reach", "stretched toward it", "plain pseudo-inverse", 0.1),
+        ("reach", "stretched toward it", "damping 0.1", 0.1),
+        ("reach", "at the end of its reach", "damping 0.1", 1e-6),
         ("fresnel", "into 1.1", "schlick, one side", 0.2),
         ("fresnel", "out of glass", "schlick, one side", 0.8),
     ];

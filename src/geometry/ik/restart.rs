@@ -3,7 +3,7 @@
 
 use super::Settings;
 use super::descent::{End, Run, descend};
-use super::problem::{Problem, State, Variable};
+use super::problem::{Problem, State, Term, Variable};
 use crate::geometry::skeleton::Turning;
 use crate::math::random::Random;
 
@@ -61,15 +61,18 @@ fn anywhere(v: &Variable, random: &mut Random) -> f64 {
     random.between(v.limits.low.max(-most), v.limits.high.min(most))
 }
 
-/// A sum that no pose is below, for one goal of a chain whose base is fixed: the distance beyond the stretched chain. 0 where this says
-/// nothing. A slack in the last digits lets a stretched chain be at its bound.
+/// A sum that no pose is below, for one goal of a chain whose base is fixed: the distance beyond the stretched chain, or within the hole that
+/// a link longer than all others leaves. 0 where this says nothing. A slack in the last digits lets such a chain be at its bound.
 fn bound(problem: &Problem<'_>, state: &State) -> f64 {
     let ([term], Some(first)) = (&*problem.terms, problem.variables.first()) else { return 0.0 };
     if problem.variables.iter().any(|v| v.turning == Turning::Move) {
         return 0.0;
     }
     let base = state.placement.screws[first.motion].pivot / problem.length;
-    let beyond = (term.target - base).length() - reach(problem, term.joint) - term.local.length();
+    let distance = (term.target - base).length();
+    let links = links(problem, term);
+    let (sum, longest) = (links.iter().sum::<f64>(), links.iter().copied().fold(0.0, f64::max));
+    let beyond = (distance - sum).max((2.0 * longest - sum) - distance);
     if beyond > 0.0 { 0.5 * square(term.weight * beyond * (1.0 + 1e-9)) } else { 0.0 }
 }
 
@@ -77,11 +80,11 @@ fn square(x: f64) -> f64 {
     x * x
 }
 
-/// The lengths between the joints from the first that turns, over L.
-fn reach(problem: &Problem<'_>, joint: usize) -> f64 {
+/// The lengths from the first joint that turns to the next, and so on to the tip, over L.
+fn links(problem: &Problem<'_>, term: &Term) -> Vec<f64> {
     let joints = problem.skeleton.joints();
-    let chain = problem.skeleton.chain(joint);
+    let chain = problem.skeleton.chain(term.joint);
     let turning = chain.iter().position(|&joint| !joints[joint].coordinates().is_empty());
     let inner = chain.iter().skip(turning.map_or(chain.len(), |first| first + 1));
-    inner.map(|&joint| joints[joint].offset.length()).sum::<f64>() / problem.length
+    inner.map(|&joint| joints[joint].offset.length() / problem.length).chain([term.local.length()]).collect()
 }

@@ -6,6 +6,7 @@ mod implicits;
 mod lengths;
 mod patches;
 mod planes;
+mod reach;
 mod roots;
 mod spheres;
 mod tori;
@@ -21,7 +22,7 @@ pub const SEED: u64 = 20_240_607;
 pub type Component = fn(&Plan) -> Vec<Row>;
 
 /// All components by name, in the order of the report.
-pub const COMPONENTS: [(&str, Component); 10] = [
+pub const COMPONENTS: [(&str, Component); 11] = [
     ("curves", curves::rows),
     ("lengths", lengths::rows),
     ("roots", roots::rows),
@@ -32,6 +33,7 @@ pub const COMPONENTS: [(&str, Component); 10] = [
     ("patches", patches::rows),
     ("implicits", implicits::rows),
     ("fresnel", fresnel::rows),
+    ("reach", reach::rows),
 ];
 
 /// The spacing of f64 at x: the distance to the next number away from 0.

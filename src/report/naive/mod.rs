@@ -4,5 +4,6 @@
 pub mod implicits;
 pub mod lengths;
 pub mod patches;
+pub mod reach;
 pub mod roots;
 pub mod shapes;
