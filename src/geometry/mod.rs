@@ -3,6 +3,7 @@
 
 pub mod any_curve;
 pub mod arc_length;
+pub mod balls;
 pub mod basis;
 pub mod boxes;
 pub mod closest;

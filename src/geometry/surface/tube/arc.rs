@@ -88,6 +88,11 @@ impl Arc {
         Aabb { min: points.min - by, max: points.max + by }
     }
 
+    /// Balls whose hull holds all of its balls.
+    pub fn balls(&self) -> impl Iterator<Item = (DVec3, f64)> + Clone {
+        self.points.into_iter().zip(self.radii)
+    }
+
     /// Centre and radius at x.
     pub fn at(&self, x: f64) -> (DVec3, f64) {
         let radius = Cubic { start: 0.0, end: 1.0, points: self.radii };

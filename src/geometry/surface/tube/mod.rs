@@ -11,7 +11,8 @@ mod tests;
 
 use super::cubic::{Cubic, least, together};
 use super::{SurfacePoint, Touch};
-use crate::geometry::boxes::{BoxTree, Line};
+use crate::geometry::balls::{Ball, BallTree};
+use crate::geometry::boxes::Line;
 use crate::math::Aabb;
 use arc::Arc;
 use cell::{Edge, Span};
@@ -50,9 +51,10 @@ pub enum TubeError {
 /// A tube, ready for rays.
 #[derive(Clone, Debug)]
 pub struct Tube {
-    /// In the order of the tree.
+    /// In the order of the curve.
     arcs: Vec<Arc>,
-    tree: BoxTree,
+    tree: BallTree,
+    bounds: Aabb,
     caps: Caps,
     /// The planes across the ends: a point and the direction out. None of a closed curve.
     ends: Option<[(DVec3, DVec3); 2]>,
@@ -64,8 +66,6 @@ pub struct Tube {
 
 /// Coordinates beyond this could not be squared.
 const LARGEST: f64 = 1e150;
-/// Arcs in a leaf of the tree.
-const LEAF: usize = 1;
 
 impl Tube {
     /// What keeps a curve and a radius from making a tube: cheap.
@@ -98,13 +98,14 @@ impl Tube {
         if let (Some(ends), false) = (&ends, caps == Caps::Round) {
             arc::mark_clipped(&mut arcs, ends);
         }
-        let tree = BoxTree::build(&mut arcs, LEAF, Arc::bounds);
-        Ok(Tube { arcs, tree, caps, ends, twist, size: size_of(path, radius) })
+        let tree = BallTree::build(arcs.len(), |range| Ball::around(arcs[range].iter().flat_map(Arc::balls)));
+        let bounds = arcs.iter().fold(Aabb::EMPTY, |sum, arc| sum.union(arc.bounds()));
+        Ok(Tube { arcs, tree, bounds, caps, ends, twist, size: size_of(path, radius) })
     }
 
     /// The box around it.
     pub fn bounds(&self) -> Aabb {
-        self.tree.bounds()
+        self.bounds
     }
 
     /// Largest coordinate of its curve and radius.
@@ -131,19 +132,17 @@ impl Tube {
         let planes = line.across();
         let mut best: Option<Span> = None;
         let mut is_inside = false;
-        self.tree.walk(line, near, far, |range, mut far| {
-            for index in range {
-                self.spans(line, &planes, index, (near, far), |span| {
-                    if span.low.s > near {
-                        if span.low.s <= far {
-                            far = span.low.s;
-                            best = Some(span);
-                        }
-                    } else if span.high.s > near {
-                        is_inside = true;
+        self.tree.walk(line, near, far, |index, mut far| {
+            self.spans(line, &planes, index, (near, far), |span| {
+                if span.low.s > near {
+                    if span.low.s <= far {
+                        far = span.low.s;
+                        best = Some(span);
                     }
-                });
-            }
+                } else if span.high.s > near {
+                    is_inside = true;
+                }
+            });
             if is_inside { f64::NEG_INFINITY } else { far }
         });
         if is_inside {
@@ -157,10 +156,8 @@ impl Tube {
         let planes = line.across();
         let mut spans = Vec::new();
         let everywhere = (f64::NEG_INFINITY, f64::INFINITY);
-        self.tree.walk(line, everywhere.0, everywhere.1, |range, far| {
-            for index in range {
-                self.spans(line, &planes, index, everywhere, |span| spans.push(span));
-            }
+        self.tree.walk(line, everywhere.0, everywhere.1, |index, far| {
+            self.spans(line, &planes, index, everywhere, |span| spans.push(span));
             far
         });
         spans.sort_by(|a: &Span, b: &Span| a.low.s.total_cmp(&b.low.s));
