@@ -7,16 +7,20 @@
 
 mod builder;
 mod enclose;
+mod fold;
 mod linear;
 mod linearizer;
+mod quadratic;
 mod rules;
 mod run;
 mod simplify;
 
 pub use builder::{FieldBuilder, Label, TableId, TooLarge};
 pub use enclose::{Choice, Enclosed, Encloser};
+pub use fold::Fold;
 pub use linear::Linear;
 pub use linearizer::Linearizer;
+pub use quadratic::Quadratic;
 pub use run::SMALL;
 
 use std::sync::Arc;

@@ -5,7 +5,7 @@
 //!
 //! A form holds the true values and those that plain f64 arithmetic computes, step by step as they are made; the derivatives are the true ones.
 
-use crate::math::elementary::{exp, ln, sin_cos};
+use crate::math::elementary::{exp, ln};
 use crate::math::interval::Interval;
 
 /// Values and derivatives over a box of N sides.
@@ -33,6 +33,11 @@ impl<const N: usize> Linear<N> {
     /// A number that does not change.
     pub const fn constant(x: f64) -> Self {
         Linear { middle: x, slope: [0.0; N], rest: 0.0, bend: [0.0; N] }
+    }
+
+    /// A number that changes along these sides by so much, up to a rest.
+    pub fn new(middle: f64, slope: [f64; N], rest: f64) -> Self {
+        Linear { middle, slope, rest, bend: [0.0; N] }
     }
 
     /// How far values may be from the middle.
@@ -118,9 +123,9 @@ impl<const N: usize> Linear<N> {
         let reach = self.reach();
         let half = 0.5 * reach * reach;
         // ½ f″ · (0 … reach²).
-        let (low, high) = (f64::min(second.0 * half, 0.0), f64::max(second.1 * half, 0.0));
+        let (low, high) = (lesser(second.0 * half, 0.0), greater(second.1 * half, 0.0));
         let steep = first.abs();
-        let turn = second.0.abs().max(second.1.abs()) * reach;
+        let turn = greater(second.0.abs(), second.1.abs()) * reach;
         let result = Linear {
             middle: value + 0.5 * (low + high),
             slope: self.slope.map(|g| first * g),
@@ -142,17 +147,15 @@ impl<const N: usize> Linear<N> {
         .rounded(low.abs() + high.abs(), [0.0; N])
     }
 
-    /// Sine of radians.
-    #[inline]
-    pub(super) fn sin(&self) -> Self {
-        let (s, c) = sin_cos(self.middle);
+    /// Sine of radians, given sine and cosine of the middle.
+    #[inline(always)]
+    pub(super) fn sin(&self, (s, c): (f64, f64)) -> Self {
         self.wave(s, c)
     }
 
     /// Cosine of radians.
-    #[inline]
-    pub(super) fn cos(&self) -> Self {
-        let (s, c) = sin_cos(self.middle);
+    #[inline(always)]
+    pub(super) fn cos(&self, (s, c): (f64, f64)) -> Self {
         self.wave(c, -s)
     }
 
@@ -165,8 +168,8 @@ impl<const N: usize> Linear<N> {
         if !(reach < WIDE) {
             return self.flat(Interval::new(-1.0, 1.0), 1.0);
         }
-        let low = (value - reach - GROWTH).max(-1.0);
-        let high = (value + reach + GROWTH).min(1.0);
+        let low = greater(value - reach - GROWTH, -1.0);
+        let high = lesser(value + reach + GROWTH, 1.0);
         self.curved(value, first, (-high, -low))
     }
 
@@ -281,4 +284,15 @@ impl<const N: usize> Linear<N> {
         };
         Some(flat.rounded(0.0, sum.slope.map(f64::abs)))
     }
+}
+
+/// `f64::min` and `max` look for NaN, which the finished form is asked for.
+#[inline(always)]
+fn lesser(a: f64, b: f64) -> f64 {
+    if a < b { a } else { b }
+}
+
+#[inline(always)]
+fn greater(a: f64, b: f64) -> f64 {
+    if a > b { a } else { b }
 }

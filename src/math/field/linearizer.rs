@@ -1,9 +1,12 @@
 //! Running a tape on linear forms: over a box its first output is a linear function and a small rest. Only tapes without jumps, and only
 //! where nothing may be undefined; elsewhere [`super::Encloser`] knows more.
 
+mod bow;
+
 use super::enclose::{Choice, Enclosed};
 use super::linear::Linear;
 use super::{Binary, Call1, Call2, CallN, Field, MAX_CALL, Op, Register, Rule, Unary, rules};
+use crate::math::elementary::sin_cos;
 use crate::math::interval::Interval;
 
 /// Runs a tape on linear forms, again and again.
@@ -12,6 +15,26 @@ pub struct Linearizer<'f, const N: usize> {
     forms: Vec<Linear<N>>,
     choices: Vec<Choice>,
     records: bool,
+    waves: Waves,
+}
+
+/// Sines and cosines of late: formulas tend to have both of one argument.
+struct Waves {
+    known: [(f64, (f64, f64)); 4],
+    next: usize,
+}
+
+impl Waves {
+    #[inline(always)]
+    fn of(&mut self, x: f64) -> (f64, f64) {
+        if let Some((_, wave)) = self.known.iter().find(|(of, _)| of.to_bits() == x.to_bits()) {
+            return *wave;
+        }
+        let wave = sin_cos(x);
+        self.known[self.next] = (x, wave);
+        self.next = (self.next + 1) % 4;
+        wave
+    }
 }
 
 impl<'f, const N: usize> Linearizer<'f, N> {
@@ -19,7 +42,8 @@ impl<'f, const N: usize> Linearizer<'f, N> {
     pub fn reuse(field: &'f Field, mut forms: Vec<Linear<N>>) -> Self {
         forms.clear();
         forms.extend(field.initial.iter().map(|&x| Linear::constant(x)));
-        Linearizer { field, forms, choices: Vec::new(), records: false }
+        let known = [(0.0, (0.0, 1.0)); 4];
+        Linearizer { field, forms, choices: Vec::new(), records: false, waves: Waves { known, next: 0 } }
     }
 
     /// The memory.
@@ -61,7 +85,7 @@ impl<'f, const N: usize> Linearizer<'f, N> {
         let (to, result) = match op {
             Op::Unary(op, to, a) => (to, self.unary(at, op, self.get(a))?),
             Op::Binary(op, to, a, b) => (to, self.binary(at, op, a, b)?),
-            Op::Call1(f, rule, to, a) => (to, call1(f, rule, self.get(a))?),
+            Op::Call1(f, rule, to, a) => (to, self.call1(f, rule, self.get(a))?),
             Op::Call2(f, rule, to, a, b) => (to, call2(f, rule, self.get(a), self.get(b))?),
             Op::Select(to, condition, a, b) => {
                 let chosen = if self.get(condition).sign().is_some() {
@@ -154,6 +178,17 @@ impl<'f, const N: usize> Linearizer<'f, N> {
         }
     }
 
+    #[inline(always)]
+    fn call1(&mut self, f: Call1, rule: Rule, a: Linear<N>) -> Option<Linear<N>> {
+        match rule {
+            Rule::Sin => Some(a.sin(self.waves.of(a.middle))),
+            Rule::Cos => Some(a.cos(self.waves.of(a.middle))),
+            Rule::Exp => Some(a.exp()),
+            Rule::Ln => a.ln(),
+            _ => by_derivatives(&[a], |of| rules::call1(f, rule, &of[0])),
+        }
+    }
+
     fn call_n(
         &mut self,
         f: CallN,
@@ -186,16 +221,6 @@ fn truth<const N: usize>(yes: bool) -> Linear<N> {
 fn steady<const N: usize>(a: Linear<N>, f: fn(f64) -> f64) -> Option<Linear<N>> {
     let range = a.range();
     (f(range.lo) == f(range.hi)).then(|| Linear::constant(f(range.lo)))
-}
-
-fn call1<const N: usize>(f: Call1, rule: Rule, a: Linear<N>) -> Option<Linear<N>> {
-    match rule {
-        Rule::Sin => Some(a.sin()),
-        Rule::Cos => Some(a.cos()),
-        Rule::Exp => Some(a.exp()),
-        Rule::Ln => a.ln(),
-        _ => by_derivatives(&[a], |of| rules::call1(f, rule, &of[0])),
-    }
 }
 
 fn call2<const N: usize>(f: Call2, rule: Rule, a: Linear<N>, b: Linear<N>) -> Option<Linear<N>> {

@@ -19,15 +19,19 @@ impl Field {
         {
             return None;
         }
+        Some(self.chosen(choices)).filter(|field| field.ops.len() < self.ops.len())
+    }
+
+    /// The same though it may be no shorter, of a tape without jumps.
+    pub(super) fn chosen(&self, choices: &[Choice]) -> Field {
         let ops: Vec<Op> = self.ops.iter().zip(choices).map(|(op, choice)| decided(*op, *choice)).collect();
         let needed = self.needed(&ops);
         let kept = |i: &usize| needed[*i];
-        let field = Field {
+        Field {
             ops: (0..ops.len()).filter(kept).map(|i| ops[i]).collect(),
             sites: (0..ops.len()).filter(kept).map(|i| self.sites[i]).collect(),
             ..self.clone()
-        };
-        (field.ops.len() < self.ops.len()).then_some(field)
+        }
     }
 
     /// Which steps the outputs depend on, and those that may stop the tape on the way to them.
@@ -73,6 +77,13 @@ fn written(op: &Op) -> (Register, usize) {
             (Register(0), 0)
         }
     }
+}
+
+/// How often a step reads a register.
+pub(super) fn reads(op: &Op, register: Register) -> usize {
+    let mut count = 0;
+    each_read(op, |r| count += usize::from(r == register));
+    count
 }
 
 fn each_read(op: &Op, mut read: impl FnMut(Register)) {

@@ -6,6 +6,7 @@
 //! reaches 0 it counts as touched. A place where the function is undefined, or where the search gives up, is met too, so that its
 //! pixel can say so; neither is ever taken for empty space.
 
+mod bowl;
 mod cells;
 mod grow;
 mod plane;
@@ -76,22 +77,25 @@ impl Implicit {
         }
     }
 
-    /// f near a point as a linear function of so small steps that its slope there is the gradient, with bounds on their rounding; none where
-    /// it is not known.
+    /// f near a point; none where it is not known.
     fn tangent(&self, p: DVec3) -> Option<Tangent> {
         let step = STEP * self.bounds().size().max_element();
         let inputs = std::array::from_fn::<_, 3, _>(|i| {
-            let mut x = Linear::constant(p[i]);
-            x.slope[i] = step;
-            x
+            let mut slope = [0.0; 3];
+            slope[i] = step;
+            Linear::new(p[i], slope, 0.0)
         });
         let (form, memory) = Linearizer::reuse(&self.function.field, SPARE_TANGENT.take()).once(&inputs);
         SPARE_TANGENT.set(memory);
         let form = form?;
         let gradient = DVec3::from_array(form.slope) / step;
         let off = DVec3::from_array(form.bend) / step;
+        let normal = gradient.try_normalize()?;
         let is_known = off.max_element() <= gradient.abs().max_element() * LEAST_KNOWN;
-        is_known.then_some(Tangent { gradient, off: form.middle.abs() + form.rest })
+        // Along the normal f changes by the gradient's length, up to its roundings; that must outweigh what it may be off by.
+        let clear = (form.middle.abs() + form.rest) / gradient.length() * (1.0 + gamma(16));
+        let clearance = (clear <= step * 0.5).then_some(clear);
+        is_known.then_some(Tangent { gradient, normal, clearance })
     }
 
     /// Where the scene's promise about the gradient is broken, and what it is there: looked for at the middles of all cells.
@@ -166,12 +170,13 @@ impl Implicit {
             return self.marked(point, -ray.direction.normalize(), rounding);
         }
         let tangent = self.tangent(point);
-        let (normal, first) = match tangent.and_then(|t| t.gradient.try_normalize().map(|n| (n, t))) {
-            // What f is off by here, and about as much there.
-            Some((normal, t)) => (normal, rounding.max(1.25 * t.off / t.gradient.length())),
-            None => (self.normal(point, ray, rounding), rounding),
+        let normal = tangent.map_or_else(|| self.normal(point, ray, rounding), |t| t.normal);
+        let error = match tangent.and_then(|t| t.clearance) {
+            // A ray that starts there is rounded as well.
+            Some(clearance) => 2.0 * clearance.max(rounding),
+            None => self.clearance(point, normal, rounding),
         };
-        self.marked(point, normal, self.clearance(point, normal, rounding, first))
+        self.marked(point, normal, error)
     }
 
     fn marked(&self, point: DVec3, normal: DVec3, error: f64) -> Surface {
@@ -187,11 +192,11 @@ impl Implicit {
         }
     }
 
-    /// How far from a point, along the normal either way, f is surely not 0: rounding included. From a first guess doubled until it is, up to a
-    /// share of the coordinates at which nothing is left to see.
-    fn clearance(&self, point: DVec3, normal: DVec3, rounding: f64, first: f64) -> f64 {
+    /// How far from a point, along the normal either way, f is surely not 0: rounding included. Doubled until it is, up to a share of the
+    /// coordinates at which nothing is left to see.
+    fn clearance(&self, point: DVec3, normal: DVec3, rounding: f64) -> f64 {
         let most = rounding * (1u64 << 30) as f64;
-        let mut away = first.clamp(f64::MIN_POSITIVE, most.max(f64::MIN_POSITIVE));
+        let mut away = rounding.max(f64::MIN_POSITIVE);
         while away < most && !(self.is_clear(point + normal * away) && self.is_clear(point - normal * away)) {
             away *= 2.0;
         }
@@ -240,12 +245,13 @@ impl Implicit {
 #[derive(Clone, Copy, Debug)]
 struct Tangent {
     gradient: DVec3,
-    /// How far f may be from 0 at the point, rounding included.
-    off: f64,
+    normal: DVec3,
+    /// How far along the normal either way f is surely not 0, rounding included, where that is near.
+    clearance: Option<f64>,
 }
 
-/// The steps of a tangent, as a share of the box: no second derivative is felt over them, and their squares do not underflow.
-const STEP: f64 = 1.0 / (1u64 << 60) as f64;
+/// The size of the box in which a tangent is taken, as a share of the shape's: the square of it is not felt, roundings are much smaller.
+const STEP: f64 = 1.0 / (1u64 << 36) as f64;
 /// A gradient that may be off by more than this is not known.
 const LEAST_KNOWN: f64 = 1.0 / (1 << 20) as f64;
 

@@ -1,6 +1,7 @@
 //! The parts of a box that may hold zeros of a function: an octree, each of whose cells has the tape that is left of the function there, and
 //! the plane that it is near, where that is known. How it is made is the matter of [`super::grow`].
 
+use super::bowl::Shape;
 use super::plane::Plane;
 use crate::math::Aabb;
 use crate::math::field::Field;
@@ -24,6 +25,8 @@ pub(super) struct Leaf {
     pub tape: u32,
     /// None where f may jump or be undefined.
     pub plane: Option<Plane>,
+    /// Where the plane leaves much open, and more is known.
+    pub shape: Option<Shape>,
 }
 
 /// A cell on a ray's way.
@@ -52,15 +55,15 @@ impl Cells {
 
     /// The middles of all cells that may hold zeros.
     pub fn middles(&self, bounds: Aabb) -> impl Iterator<Item = DVec3> {
-        let mut rest = vec![(self.root, bounds)];
+        let mut rest = vec![(self.root, Place::of(bounds))];
         std::iter::from_fn(move || {
-            while let Some((cell, bounds)) = rest.pop() {
+            while let Some((cell, place)) = rest.pop() {
                 match cell {
                     Cell::Empty(_) => {}
-                    Cell::Leaf(_) => return Some(bounds.center()),
-                    Cell::Parts(place) => {
-                        let parts = &self.parts[place as usize];
-                        rest.extend((0..8).map(|i| (parts[i], octant(bounds, i))));
+                    Cell::Leaf(_) => return Some(place.middle),
+                    Cell::Parts(parts) => {
+                        let parts = &self.parts[parts as usize];
+                        rest.extend((0..8).map(|i| (parts[i], place.octant(i))));
                     }
                 }
             }
@@ -78,16 +81,32 @@ impl Cells {
         between: (f64, f64),
         visit: &mut impl FnMut(f64, f64, Visited<'_>) -> bool,
     ) {
-        let walk = Walk { cells: self, origin, direction };
-        walk.visit(self.root, bounds, between, visit);
+        let walk = Walk { cells: self, origin, direction, inverse: direction.recip() };
+        walk.enter(self.root, &Place::of(bounds), None, between, visit);
     }
 }
 
-/// An eighth of a box.
-pub(super) fn octant(bounds: Aabb, part: usize) -> Aabb {
-    let middle = bounds.center();
-    let upper = glam::BVec3::new(part & 1 != 0, part & 2 != 0, part & 4 != 0);
-    Aabb { min: DVec3::select(upper, middle, bounds.min), max: DVec3::select(upper, bounds.max, middle) }
+/// Where a cell is.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Place {
+    pub middle: DVec3,
+    /// Half of its sides.
+    pub half: DVec3,
+}
+
+impl Place {
+    /// A box.
+    pub fn of(bounds: Aabb) -> Place {
+        Place { middle: bounds.center(), half: (bounds.max - bounds.min) / 2.0 }
+    }
+
+    /// An eighth of it.
+    #[inline(always)]
+    pub fn octant(&self, part: usize) -> Place {
+        let half = self.half / 2.0;
+        let upper = glam::BVec3::new(part & 1 != 0, part & 2 != 0, part & 4 != 0);
+        Place { middle: self.middle + DVec3::select(upper, half, -half), half }
+    }
 }
 
 /// A ray on its way through the octree.
@@ -95,52 +114,58 @@ struct Walk<'c> {
     cells: &'c Cells,
     origin: DVec3,
     direction: DVec3,
+    inverse: DVec3,
 }
 
 impl Walk<'_> {
-    fn visit(
+    #[inline(always)]
+    fn enter(
         &self,
         cell: Cell,
-        bounds: Aabb,
+        place: &Place,
+        part: Option<usize>,
         (from, to): (f64, f64),
         visit: &mut impl FnMut(f64, f64, Visited<'_>) -> bool,
     ) -> bool {
-        let place = match cell {
-            Cell::Empty(negative) => return visit(from, to, Visited::Empty(negative)),
-            Cell::Leaf(leaf) => return visit(from, to, Visited::Leaf(&self.cells.leaves[leaf as usize])),
-            Cell::Parts(place) => place,
-        };
-        let middle = bounds.center();
-        let cuts: [f64; 3] = std::array::from_fn(|axis| self.cut(axis, middle[axis]));
-        let mut ends = [cuts[0], cuts[1], cuts[2], to];
-        ends.sort_by(f64::total_cmp);
-        let mut at = from;
-        for end in ends {
-            let end = end.min(to);
-            if !(end > at) {
-                continue;
+        match cell {
+            Cell::Empty(negative) => visit(from, to, Visited::Empty(negative)),
+            Cell::Leaf(leaf) => visit(from, to, Visited::Leaf(&self.cells.leaves[leaf as usize])),
+            Cell::Parts(parts) => {
+                let place = part.map_or(*place, |part| place.octant(part));
+                self.divide(&self.cells.parts[parts as usize], place, (from, to), visit)
             }
-            let part = (0..3).fold(0, |bits, axis| {
-                let beyond = at >= cuts[axis];
-                let upper = beyond != self.direction[axis].is_sign_negative();
-                bits | (usize::from(upper) << axis)
-            });
-            let inside = self.cells.parts[place as usize][part];
-            if !self.visit(inside, octant(bounds, part), (at, end), visit) {
+        }
+    }
+
+    fn divide(
+        &self,
+        parts: &[Cell; 8],
+        place: Place,
+        (from, to): (f64, f64),
+        visit: &mut impl FnMut(f64, f64, Visited<'_>) -> bool,
+    ) -> bool {
+        let cuts: [f64; 3] = std::array::from_fn(|axis| self.cut(axis, place.middle[axis]));
+        let backward = self.direction.is_negative_bitmask() as usize;
+        let mut at = from;
+        loop {
+            let beyond = (0..3).fold(0, |bits, axis| bits | (usize::from(at >= cuts[axis]) << axis));
+            let end = (0..3).filter(|axis| beyond >> axis & 1 == 0).fold(to, |end, axis| end.min(cuts[axis]));
+            let part = beyond ^ backward;
+            if !self.enter(parts[part], &place, Some(part), (at, end), visit) {
                 return false;
+            }
+            if !(end < to) {
+                return true;
             }
             at = end;
         }
-        true
     }
 
     /// Where the ray crosses the plane between lower and upper half; for a ray along it before or after everything, by its side.
+    #[inline(always)]
     fn cut(&self, axis: usize, plane: f64) -> f64 {
-        let (o, d) = (self.origin[axis], self.direction[axis]);
-        if d != 0.0 {
-            return (plane - o) / d;
-        }
-        let is_upper = o >= plane;
-        if is_upper == d.is_sign_positive() { f64::NEG_INFINITY } else { f64::INFINITY }
+        let cut = (plane - self.origin[axis]) * self.inverse[axis];
+        // 0 · ∞: in the plane itself, which is of the upper half.
+        if cut.is_nan() { -f64::INFINITY.copysign(self.direction[axis]) } else { cut }
     }
 }

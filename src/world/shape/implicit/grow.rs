@@ -2,12 +2,13 @@
 //! where f is flat, and halved otherwise.
 
 use super::FAR;
-use super::cells::{Cell, Cells, Leaf, octant};
+use super::bowl::{Bowl, Shape};
+use super::cells::{Cell, Cells, Leaf, Place};
 use super::directions;
 use super::plane::Plane;
 use crate::math::Aabb;
 use crate::math::error::gamma;
-use crate::math::field::{Choice, Enclosed, Encloser, Field, Linear, Linearizer};
+use crate::math::field::{Choice, Enclosed, Encloser, Field, Fold, Linear, Linearizer, Quadratic};
 use crate::math::interval::Interval;
 use glam::DVec3;
 use std::collections::HashMap;
@@ -20,9 +21,9 @@ const DEEPEST: u32 = 7;
 
 /// A cell on its way.
 struct Trial {
-    bounds: Aabb,
+    place: Place,
     tape: u32,
-    /// Which of the parts of which place it is; none for all of the box.
+    /// Which of the parts of which eight it is; none for all of the box.
     slot: Option<(u32, usize)>,
 }
 
@@ -47,8 +48,11 @@ pub(super) fn grow(field: &Field, bounds: Aabb) -> Cells {
         shorter: HashMap::new(),
         reach: bounds.center().abs() + size * (FAR + 1.0),
         forms: Vec::new(),
+        quadratics: Vec::new(),
+        folds: HashMap::new(),
     };
-    let mut level: Vec<Trial> = growing.tried(Trial { bounds, tape: 0, slot: None }).into_iter().collect();
+    let mut level: Vec<Trial> =
+        growing.tried(Trial { place: Place::of(bounds), tape: 0, slot: None }).into_iter().collect();
     let mut tried = 1;
     for _ in 0..DEEPEST {
         tried += 8 * level.len();
@@ -56,6 +60,9 @@ pub(super) fn grow(field: &Field, bounds: Aabb) -> Cells {
             break;
         }
         level = level.into_iter().flat_map(|cell| growing.halved(&cell)).collect();
+    }
+    if field.is_bowed() {
+        growing.bend(growing.cells.root, Place::of(bounds));
     }
     growing.cells
 }
@@ -68,6 +75,9 @@ struct Growing {
     /// The greatest coordinates of where a ray may start: points on it are off by their rounding.
     reach: DVec3,
     forms: Vec<Linear<3>>,
+    quadratics: Vec<Quadratic>,
+    /// By their tapes.
+    folds: HashMap<u32, Option<Fold>>,
 }
 
 impl Growing {
@@ -76,7 +86,7 @@ impl Growing {
         let (cell, again) = match self.verdict(&trial) {
             Verdict::Empty(negative) => (Cell::Empty(negative), None),
             Verdict::Unclear { tape, plane, halve } => {
-                self.cells.leaves.push(Leaf { tape, plane });
+                self.cells.leaves.push(Leaf { tape, plane, shape: None });
                 let leaf = Cell::Leaf(self.cells.leaves.len() as u32 - 1);
                 (leaf, halve.then_some(tape))
             }
@@ -88,40 +98,33 @@ impl Growing {
     fn set(&mut self, trial: &Trial, cell: Cell) {
         match trial.slot {
             None => self.cells.root = cell,
-            Some((place, i)) => self.cells.parts[place as usize][i] = cell,
+            Some((parts, i)) => self.cells.parts[parts as usize][i] = cell,
         }
     }
 
     /// Those of the eight parts of a cell that should be halved again.
     fn halved(&mut self, cell: &Trial) -> Vec<Trial> {
-        let place = self.cells.parts.len() as u32;
+        let parts = self.cells.parts.len() as u32;
         self.cells.parts.push([Cell::Empty(false); 8]);
-        self.set(cell, Cell::Parts(place));
-        let part = |i| Trial { bounds: octant(cell.bounds, i), tape: cell.tape, slot: Some((place, i)) };
+        self.set(cell, Cell::Parts(parts));
+        let part = |i| Trial { place: cell.place.octant(i), tape: cell.tape, slot: Some((parts, i)) };
         (0..8).filter_map(|i| self.tried(part(i))).collect()
     }
 
     fn verdict(&mut self, trial: &Trial) -> Verdict {
-        let slack = self.reach * gamma(8);
-        let around = Aabb { min: trial.bounds.min - slack, max: trial.bounds.max + slack };
-        let middle = around.center();
-        let half = ((around.max - middle).max(middle - around.min)).map(f64::next_up);
-        let inputs = std::array::from_fn::<_, 3, _>(|i| {
-            let mut x = Linear::constant(middle[i]);
-            x.slope[i] = half[i];
-            x
-        });
+        let (middle, half) = self.sides(&trial.place);
+        let inputs = inputs(middle, half);
         let field = &self.cells.tapes[trial.tape as usize];
         let mut linearizer = Linearizer::reuse(field, std::mem::take(&mut self.forms));
         let known = linearizer.run_choosing(&inputs).map(|(form, choices)| (form, choices.to_vec()));
         self.forms = linearizer.into_memory();
-        let Some((form, choices)) = known else { return self.by_intervals(trial, around) };
+        let Some((form, choices)) = known else { return self.by_intervals(trial, middle, half) };
         if let Some(negative) = form.sign() {
             return Verdict::Empty(negative);
         }
         // Where a form is mostly rest, intervals may be the narrower.
         if form.rest > form.slope.iter().map(|g| g.abs()).sum()
-            && let Verdict::Empty(negative) = self.by_intervals(trial, around)
+            && let Verdict::Empty(negative) = self.by_intervals(trial, middle, half)
         {
             return Verdict::Empty(negative);
         }
@@ -130,9 +133,58 @@ impl Growing {
         Verdict::Unclear { tape, plane, halve: plane.is_none() || !Plane::is_flat(&form) }
     }
 
-    fn by_intervals(&mut self, trial: &Trial, around: Aabb) -> Verdict {
-        let (min, max) = (around.min.to_array(), around.max.to_array());
-        let box_of = std::array::from_fn(|i| Interval::new(min[i], max[i]));
+    /// The middle of a cell and half of its sides, with room for the rounding of points on rays.
+    fn sides(&self, place: &Place) -> (DVec3, DVec3) {
+        (place.middle, (place.half + self.reach * gamma(8)).map(f64::next_up))
+    }
+
+    /// Finds bowls for the leaves of a cell.
+    fn bend(&mut self, cell: Cell, place: Place) {
+        match cell {
+            Cell::Empty(_) => {}
+            Cell::Leaf(leaf) => self.cells.leaves[leaf as usize].shape = self.shape(leaf, &place),
+            Cell::Parts(parts) => {
+                for part in 0..8 {
+                    self.bend(self.cells.parts[parts as usize][part], place.octant(part));
+                }
+            }
+        }
+    }
+
+    fn shape(&mut self, leaf: u32, place: &Place) -> Option<Shape> {
+        let tape = self.cells.leaves[leaf as usize].tape;
+        self.cells.leaves[leaf as usize].plane?;
+        let (linear, bowl, open) = self.bowl(&self.cells.tapes[tape as usize].clone(), place)?;
+        if Plane::is_flat(&linear) {
+            return None;
+        }
+        if !open {
+            return bowl.filter(|bowl| bowl.rest() < 0.5 * linear.rest).map(Shape::Bowl);
+        }
+        let tapes = &self.cells.tapes;
+        let fold = self.folds.entry(tape).or_insert_with(|| tapes[tape as usize].folded()).clone()?;
+        let sides =
+            [&fold.sides[0], &fold.sides[1]].map(|side| self.bowl(side, place).and_then(|(_, bowl, _)| bowl));
+        let [Some(a), Some(b)] = sides else { return None };
+        Some(Shape::Fold(Box::new([a, b]), fold.greater))
+    }
+
+    /// A tape's linear form in a cell, its bowl, and whether a choice of it is open there. None where it is not known.
+    fn bowl(&mut self, field: &Field, place: &Place) -> Option<(Linear<3>, Option<Bowl>, bool)> {
+        let (middle, half) = self.sides(place);
+        let inputs = inputs(middle, half);
+        let mut linearizer = Linearizer::reuse(field, std::mem::take(&mut self.forms));
+        let known = linearizer.run_choosing(&inputs).map(|(form, choices)| (form, field.is_open(choices)));
+        let bowl = known
+            .and_then(|_| linearizer.quadratic(&inputs.map(|x| Quadratic::of(&x)), &mut self.quadratics));
+        self.forms = linearizer.into_memory();
+        let (linear, open) = known?;
+        Some((linear, bowl.and_then(|form| Bowl::new(&form, middle, half, self.reach)), open))
+    }
+
+    fn by_intervals(&mut self, trial: &Trial, middle: DVec3, half: DVec3) -> Verdict {
+        let (min, max) = (middle - half, middle + half);
+        let box_of = std::array::from_fn(|i| Interval::new(min[i].next_down(), max[i].next_up()));
         let field = &self.cells.tapes[trial.tape as usize];
         let mut encloser = Encloser::new(field);
         let (all, choices) = encloser.run_choosing(&directions(box_of, [DVec3::X, DVec3::Y, DVec3::Z]));
@@ -166,6 +218,15 @@ impl Growing {
             }
         })
     }
+}
+
+/// The coordinates of a cell.
+fn inputs(middle: DVec3, half: DVec3) -> [Linear<3>; 3] {
+    std::array::from_fn(|i| {
+        let mut slope = [0.0; 3];
+        slope[i] = half[i];
+        Linear::new(middle[i], slope, 0.0)
+    })
 }
 
 /// f(c) + ∇f·(x − c) over the box.

@@ -5,6 +5,7 @@
 
 mod halve;
 
+use super::bowl::Said;
 use super::cells::{Leaf, Visited};
 use super::plane::{Along, Part, Zeros};
 use super::{FAR, FIRST_CUT, Implicit, ON_SURFACE, UNDEFINED};
@@ -183,6 +184,7 @@ impl<'s> Search<'s> {
             self.stopped |= a + self.near.start > limit;
             if !self.stopped {
                 match cell {
+                    Visited::Empty(negative) if self.inside == Some(negative) && self.hidden.is_none() => {}
                     Visited::Empty(negative) => self.arrive(a, negative, found),
                     Visited::Leaf(leaf) => self.leaf(a, b, leaf, found),
                 }
@@ -226,7 +228,17 @@ impl<'s> Search<'s> {
         match along.zeros(a, b) {
             Zeros::None(negative) => self.arrive(a, negative, found),
             Zeros::Within(part) if along.is_steady() => self.monotone(&part, &along, found),
-            Zeros::Within(part) => {
+            Zeros::Within(part) => self.part(a, &part, leaf, found),
+        }
+    }
+
+    /// A part of a cell's piece of which the plane does not know enough.
+    fn part(&mut self, a: f64, part: &Part, leaf: &Leaf, found: Found<'_>) {
+        let (origin, direction) = (self.near.origin, self.near.direction);
+        match leaf.shape.as_ref().map(|shape| shape.zeros(origin, direction, part)) {
+            Some(Said::Nowhere(negative)) => self.arrive(a, negative, found),
+            Some(Said::Steady(part, along)) => self.monotone(&part, &along, found),
+            Some(Said::Unclear) | None => {
                 if let Some(negative) = part.before {
                     self.arrive(a, negative, found);
                 }

@@ -65,7 +65,7 @@ impl<'s> Search<'s> {
         let inputs: [Linear<1>; 3] = std::array::from_fn(|axis| {
             let (o, d) = (self.near.origin[axis], self.near.direction[axis]);
             let rest = ROUNDINGS * (o.abs() + (d * middle).abs() + (d * half).abs());
-            Linear { middle: o + d * middle, slope: [d * half], rest, bend: [0.0] }
+            Linear::new(o + d * middle, [d * half], rest)
         });
         let Some(form) = lines.run(&inputs) else { return false };
         let along =
