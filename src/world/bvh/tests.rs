@@ -143,6 +143,29 @@ fn a_hit_in_the_first_box_does_not_hide_a_nearer_one_in_the_second() {
 }
 
 #[test]
+fn rays_whose_numbers_overflow_end() {
+    let tiny: Vec<Aabb> = boxes(300, DVec3::ZERO, 8)
+        .iter()
+        .map(|b| Aabb { min: b.min * 1e-300, max: b.max * 1e-300 })
+        .collect();
+    let tree = Tree::build(tiny.len(), |i| tiny[i]);
+    for (origin, direction) in [
+        (DVec3::X * 1e300, -DVec3::X),
+        (DVec3::splat(1e200), -DVec3::ONE),
+        (DVec3::ZERO, DVec3::new(f64::NAN, 1.0, 0.0)),
+        (DVec3::NAN, DVec3::X),
+        (DVec3::splat(f64::INFINITY), -DVec3::ONE),
+    ] {
+        let mut n_offered = 0;
+        tree.traverse(origin, direction, f64::MAX, |range, t| {
+            n_offered += range.len();
+            assert!(n_offered <= tiny.len(), "{origin} {direction}: some are offered again");
+            t
+        });
+    }
+}
+
+#[test]
 fn empty_infinite_and_broken_boxes_neither_stop_the_builder_nor_hide_the_rest() {
     let mut boxes = boxes(100, DVec3::ZERO, 8);
     boxes[3] = Aabb::EMPTY;

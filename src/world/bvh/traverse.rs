@@ -240,8 +240,14 @@ fn walk(
     let mut limit = ray.limit(t_max);
     let mut stack = Stack::new();
     let mut current = Entry::default();
+    let mut is_first = true;
     loop {
-        let nearest = if current.count == 0 {
+        // A ray of which a number is infinite or NaN meets absent children too, which name the first node.
+        let is_absent = current.count == 0 && current.child == 0 && !is_first;
+        is_first = false;
+        let nearest = if is_absent {
+            None
+        } else if current.count == 0 {
             let node = &nodes[current.child as usize];
             stack.enter(node, meets(node, limit))
         } else {
