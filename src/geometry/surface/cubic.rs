@@ -53,6 +53,11 @@ impl<P: Point> Cubic<P> {
         ((b - a) * (1.0 - x) + (c - b) * x) * 2.0
     }
 
+    /// The largest second derivative by x.
+    pub fn largest_acceleration(&self) -> f64 {
+        self.acceleration(0.0).length().max(self.acceleration(1.0).length())
+    }
+
     /// Bézier points of the derivative by x.
     pub fn hodograph(&self) -> [P; 3] {
         let p = &self.points;

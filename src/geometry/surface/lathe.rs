@@ -5,6 +5,10 @@
 //! together for level lines, a steep line (|dy| ≥ the horizontal part) is asked where x = √(ρ₀² + q(y)²), and a level one where y = y(±√(x² − ρ₀²)): both
 //! are well conditioned, and their slopes are bounded by arithmetic on the ends of monotone pieces. No root is missed, none is doubled.
 
+mod mesh;
+#[cfg(test)]
+mod tests;
+
 use super::cubic::{Cubic, least};
 use super::span::{Spans, clip, wedge};
 use super::zeros::{self, Bounded, product, quadratic_range};
@@ -543,7 +547,3 @@ impl Bounded for Level<'_> {
         self.view.noise
     }
 }
-
-#[cfg(test)]
-#[path = "lathe_tests.rs"]
-mod tests;

@@ -1,4 +1,5 @@
-//! Surfaces along curves: tubes, surfaces of revolution, prisms. Rays meet them exactly. Knows nothing of scenes or pictures.
+//! Surfaces along curves: tubes, surfaces of revolution, prisms. Rays meet them exactly, and each can be cut into triangles.
+//! Knows nothing of scenes or pictures.
 //!
 //! | module | what it is |
 //! |---|---|
@@ -14,6 +15,7 @@ pub mod cubic;
 #[cfg(test)]
 mod extrude_tests;
 pub mod lathe;
+mod mesh;
 pub mod outline;
 pub mod prism;
 pub mod span;

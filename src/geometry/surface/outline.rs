@@ -1,6 +1,7 @@
 //! Closed outlines in a plane, and where a straight line in that plane crosses them. Knows nothing of what is made of them.
 
 use super::cubic::Cubic;
+use super::mesh::{even, steps_along};
 use super::zeros::{self, Bounded, quadratic_range};
 use crate::geometry::curve::evaluate::bernstein;
 use glam::DVec2;
@@ -113,6 +114,15 @@ impl Outline {
         let whole = curve.length_to(1.0);
         let part = if whole > 0.0 { (curve.length_to(x) / whole).min(1.0) } else { 0.0 };
         (curve.at(x), self.shares[k] + (self.shares[k + 1] - self.shares[k]) * part)
+    }
+
+    /// Places along it, in order, between which straight lines keep a tolerance; corners have two, and the last is where the first is.
+    pub(super) fn places(&self, tolerance: f64) -> Vec<(u32, f64)> {
+        let of = |(k, piece): (usize, &Cubic<DVec2>)| {
+            let steps = steps_along(piece.largest_acceleration(), tolerance);
+            even(steps).map(move |x| (k as u32, x)).collect::<Vec<_>>()
+        };
+        self.pieces.iter().enumerate().flat_map(of).collect()
     }
 
     /// Calls `found` with each place where the line through a point in a unit direction crosses one piece.

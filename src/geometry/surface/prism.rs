@@ -1,10 +1,12 @@
 //! Prisms: a closed outline moved along a straight line. Exact: a ray crosses each cubic of the outline where a cubic is 0. Knows nothing of
 //! scenes.
 
+mod mesh;
+
 use super::outline::Outline;
 use super::span::{clip, wedge};
 use super::{SurfacePoint, Touch};
-use crate::geometry::boxes::{BoxTree, Line};
+use crate::geometry::boxes::Line;
 use crate::math::Aabb;
 use glam::{DVec2, DVec3};
 
@@ -57,9 +59,7 @@ pub struct Prism {
     outline: Outline,
     placing: Placing,
     height: f64,
-    /// Numbers of the outline's pieces, in the order of the tree.
-    pieces: Vec<u32>,
-    tree: BoxTree,
+    bounds: Aabb,
 }
 
 /// The number of the face at the start; the one at the end follows. Pieces are fewer.
@@ -68,25 +68,20 @@ const FACES: u32 = u32::MAX - 1;
 impl Prism {
     /// An outline in its place, moved by `height` > 0 along it.
     pub fn new(outline: Outline, placing: Placing, height: f64) -> Prism {
-        let bounds = |piece: &u32| {
-            let points = outline.pieces()[*piece as usize].points.map(|p| placing.place(p));
-            let all = Aabb::of(points.into_iter().flat_map(|p| [p, p + placing.along * height]));
-            let by = (all.min.abs().max(all.max.abs())) * (8.0 * f64::EPSILON);
-            Aabb { min: all.min - by, max: all.max + by }
-        };
-        let mut pieces: Vec<u32> = (0..outline.pieces().len() as u32).collect();
-        let tree = BoxTree::build(&mut pieces, 1, bounds);
-        Prism { outline, placing, height, pieces, tree }
+        let points = outline.pieces().iter().flat_map(|piece| piece.points).map(|p| placing.place(p));
+        let all = Aabb::of(points.flat_map(|p| [p, p + placing.along * height]));
+        let by = all.min.abs().max(all.max.abs()) * (8.0 * f64::EPSILON);
+        Prism { outline, placing, height, bounds: Aabb { min: all.min - by, max: all.max + by } }
     }
 
     /// The box around it.
     pub fn bounds(&self) -> Aabb {
-        self.tree.bounds()
+        self.bounds
     }
 
     /// Bytes that it takes.
     pub fn bytes(&self) -> usize {
-        size_of_val(self.outline.pieces()) + self.tree.bytes()
+        size_of_val(self.outline.pieces())
     }
 
     /// The first meeting with `near` < t ≤ `far`.
@@ -120,7 +115,7 @@ impl Prism {
     /// Meetings with the sides, as if they went on for ever.
     fn sides(&self, line: &Line, origin: DVec2, direction: DVec2, speed: f64) -> Vec<Touch> {
         let mut found = Vec::new();
-        for &piece in &self.pieces {
+        for piece in 0..self.outline.pieces().len() as u32 {
             self.outline.cross(piece, origin, direction, |c| {
                 let touch = Touch::new(c.s / speed / line.length, c.piece, c.x);
                 found.push(touch);

@@ -4,6 +4,8 @@
 //! cubic combination of its control points, so that the surface is made of bicubic pieces whose seams are shared to the bit, and is met
 //! as patches are.
 
+mod mesh;
+
 use super::outline::Outline;
 use super::prism::Placing;
 use super::{SurfacePoint, Touch};
@@ -128,9 +130,13 @@ impl Sweep {
             let uv = end.flat(point);
             return SurfacePoint { point, normal: end.along, tangent: end.side, uv };
         }
-        let (piece, u, v) = (touch.part as usize, touch.x, touch.y);
+        self.point(touch.part as usize, touch.x, touch.y)
+    }
+
+    /// A point of the side, by its piece.
+    fn point(&self, piece: usize, u: f64, v: f64) -> SurfacePoint {
         let [point, du, dv] = self.tree.pieces()[piece].first_order(u, v);
-        let normal = self.tree.pieces()[piece].normal(u, v).unwrap_or(-line.direction);
+        let normal = self.tree.pieces()[piece].normal(u, v).unwrap_or(DVec3::Y);
         let (outline_piece, step) = ((piece / self.steps) as u32, piece % self.steps);
         // u × v points out of an outline that turns left.
         let out = self.outline.normal(outline_piece, u);

@@ -1,6 +1,7 @@
 //! Short pieces of a tube, bent so little that most rays are settled at the first look.
 
 use crate::geometry::surface::cubic::Cubic;
+use crate::geometry::surface::mesh::steps_along;
 use crate::math::Aabb;
 use glam::DVec3;
 
@@ -107,6 +108,22 @@ impl Arc {
     /// Length from the start to x.
     pub fn length(&self, x: f64) -> f64 {
         self.curve().length_to(x)
+    }
+
+    /// Derivatives of the length and of the radius by x.
+    pub fn speeds(&self, x: f64) -> (f64, f64) {
+        let radius = Cubic { start: 0.0, end: 1.0, points: self.radii };
+        (self.curve().velocity(x).length(), radius.velocity(x))
+    }
+
+    /// Equal steps along it that keep a tolerance on the wall: the bend of the curve and of the radius, and the turn of the rings.
+    pub fn steps(&self, tolerance: f64) -> usize {
+        let radius = Cubic { start: 0.0, end: 1.0, points: self.radii };
+        let thick = self.radii.iter().fold(0.0, |m: f64, r| m.max(*r));
+        let turn = self.curve().turn();
+        let second =
+            self.curve().largest_acceleration() + radius.largest_acceleration() + thick * turn * turn;
+        steps_along(second, tolerance)
     }
 
     /// Share of the tube's length at x.

@@ -6,6 +6,7 @@
 mod arc;
 mod cell;
 mod frames;
+mod mesh;
 #[cfg(test)]
 mod tests;
 
