@@ -1,5 +1,5 @@
 //! Shapes as numbers, without spans: meshes, bases, curves and what is measured on them, patches, surfaces along curves,
-//! skeletons.
+//! skeletons, skins.
 
 pub mod any_curve;
 pub mod arc_length;
@@ -16,4 +16,5 @@ pub mod mesh;
 pub mod patch;
 pub mod path;
 pub mod skeleton;
+pub mod skin;
 pub mod surface;

@@ -105,13 +105,18 @@ impl Placement {
         self.frames.iter().map(Frame::affine).collect()
     }
 
-    /// A bone for each joint that hangs on another, then one for each tip. A bone may have no length.
+    /// A bone for each joint that hangs on another, then one for each tip, then one without length for each joint on which nothing hangs.
     pub fn bones(&self, skeleton: &Skeleton) -> Vec<Bone> {
         let bone = |joint: usize, end| Bone { joint, start: self.joint(joint), end };
         let of_joints = skeleton.joints.iter().zip(&self.frames);
         let between = of_joints.filter_map(|(joint, frame)| Some(bone(joint.parent?, frame.origin)));
         let to_tips =
             skeleton.tips.iter().map(|tip| bone(tip.joint, self.frames[tip.joint].point(tip.offset)));
-        between.chain(to_tips).collect()
+        let mut bones: Vec<Bone> = between.chain(to_tips).collect();
+        let mut bare = vec![true; self.frames.len()];
+        bones.iter().for_each(|bone| bare[bone.joint] = false);
+        let alone = (0..bare.len()).filter(|&joint| bare[joint]);
+        bones.extend(alone.map(|joint| bone(joint, self.joint(joint))));
+        bones
     }
 }
