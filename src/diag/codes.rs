@@ -103,6 +103,8 @@ codes! {
     BadGeometry = "E0604", "a shape is degenerate";
     UnknownCamera = "E0605", "no camera has this label";
     UnknownSetting = "E0606", "`--set` names no top-level `let`";
+    BadWeights = "E0608", "weights of a skin cannot be used";
+    WeightsNormalised = "W0609", "weights of a skin do not add up to 1";
     EmptySolid = "W0607", "nothing is left of solids that are put together";
     // 7: rendering
     UndefinedSample = "E0701", "a function is undefined at samples of the picture";

@@ -1,7 +1,7 @@
 //! Values to the types of the table: whether a value is of a type, what it becomes there, and how to speak of both.
 
 pub use super::display::number;
-use super::table::{Context, CurveOf, Property, Reported, Type};
+use super::table::{Context, CurveOf, Gives, Property, Reported, Type};
 use super::value::Value;
 use crate::diag::Span;
 pub use crate::geometry::mesh::unit;
@@ -136,7 +136,7 @@ fn sampled(
         .hint("write `p => …` of the point, or `(u, v) => …` of the surface's coordinates");
         return Err(ctx.fail(said));
     }
-    let field = ctx.sampled(function, input, outputs, span)?;
+    let field = ctx.sampled(function, input, Gives::Components(outputs), span)?;
     Ok(Value::Pattern(Arc::new(Pattern { kind: PatternKind::Function(field), transform: None, span })))
 }
 

@@ -1,6 +1,6 @@
 //! A context for tests of the tables: it keeps what is reported and printed, and every file is there.
 
-use super::table::{Arguments, Block, Builtin, Context, Kind, Outcome, Reported, Trace, Traced};
+use super::table::{Arguments, Block, Builtin, Context, Gives, Kind, Outcome, Reported, Trace, Traced};
 use super::value::{Given, Value};
 use crate::diag::{Diagnostic, SourceId, Span};
 use crate::scene::assets::Loader;
@@ -67,7 +67,7 @@ impl Context for Mock {
         self.printed.push(text);
     }
 
-    fn sampled(&mut self, _: &Value, _: SampleInput, _: &[usize], _: Span) -> Outcome<Arc<SampledFunction>> {
+    fn sampled(&mut self, _: &Value, _: SampleInput, _: Gives<'_>, _: Span) -> Outcome<Arc<SampledFunction>> {
         Err(Reported)
     }
 

@@ -44,6 +44,15 @@ pub struct Traced {
     pub uv: DVec2,
 }
 
+/// What a function that runs while rendering is to give.
+#[derive(Clone, Copy, Debug)]
+pub enum Gives<'r> {
+    /// A number or a vector, of one of these counts of components: `&[1, 3]` for a number or a colour.
+    Components(&'r [usize]),
+    /// A list of so many numbers.
+    List(usize),
+}
+
 /// What builders and builtins may ask of the evaluator.
 pub trait Context {
     /// Reports a diagnostic, with the calls that led here.
@@ -64,12 +73,11 @@ pub trait Context {
     /// What `print` says.
     fn print(&mut self, text: String);
     /// Compiles a function value to run while rendering; reports why it cannot be.
-    /// `outputs` are the counts that the place allows: `&[1, 3]` for a colour or a number.
     fn sampled(
         &mut self,
         function: &Value,
         input: SampleInput,
-        outputs: &[usize],
+        gives: Gives<'_>,
         at: Span,
     ) -> Outcome<Arc<SampledFunction>>;
     /// Counts `elements` list elements (or bytes / 32) that are about to be made, or gone through, against the guards.

@@ -157,6 +157,8 @@ pub enum PatternKind {
     Wood(Texture, Texture),
     /// Gradient noise in 0 … 1 as a grey, or between two textures.
     Noise(Texture, Texture),
+    /// How much a skin's joint of this name moves the point, 0 … 1; 0 on what is no skin.
+    Weight(Box<str>),
     /// A function of the scene, as a tape.
     Function(Arc<SampledFunction>),
 }
@@ -174,7 +176,7 @@ impl PatternKind {
             PatternKind::Ramp(input, stops) => {
                 std::iter::once(input).chain(stops.iter().map(|(_, texture)| texture)).collect()
             }
-            PatternKind::Image(_) | PatternKind::Function(_) => Vec::new(),
+            PatternKind::Image(_) | PatternKind::Weight(_) | PatternKind::Function(_) => Vec::new(),
         }
     }
 }

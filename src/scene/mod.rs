@@ -8,6 +8,7 @@ pub mod material;
 pub mod object;
 pub mod rig;
 pub mod settings;
+pub mod skin;
 mod solid;
 pub mod surface;
 
@@ -22,6 +23,7 @@ pub use object::{
 };
 pub use rig::{Figure, Motion, Pose, Reach, Rig, Stance};
 pub use settings::{Accelerator, RenderSettings, ToneMap, TracerKind};
+pub use skin::{Armature, Skin, SkinSurface, Weights};
 pub use solid::{open_mesh, solid_fault};
 pub use surface::{
     Along, ExtrudeSource, LatheSource, PatchMethod, PatchNet, PatchSource, Radius, Surface, TubeSource,

@@ -25,6 +25,9 @@ pub fn solid_fault(node: &Node) -> Option<Diagnostic> {
         Shape::Triangle(_) => Some(flat(object, "triangle", "write a closed `mesh` instead")),
         Shape::Surface(surface) if surface.is_solid() => None,
         Shape::Surface(surface) => Some(open_surface(surface, object.span)),
+        Shape::Skin(_) => {
+            Some(flat(object, "skin", "put the solids together first, out of parts that do not bend"))
+        }
     }
 }
 

@@ -5,11 +5,12 @@ mod figures;
 
 use crate::diag::{SourceMap, Span};
 use crate::geometry::path::Path;
+use crate::geometry::skin::Blend;
 use crate::math::{Affine, Point};
 use crate::scene::{
     Accelerator, Along, Camera, Fresnel, Layers, Light, LightSource, Lobe, Material, MeshSource, Node,
     Object, PatchMethod, PatchNet, PatchSource, PatternKind, Projection, Radius, RenderSettings, Rgb,
-    SampleInput, Scene, Shape, Sky, Surface, Texture, ToneMap, TracerKind,
+    SampleInput, Scene, Shape, Skin, SkinSurface, Sky, Surface, Texture, ToneMap, TracerKind, Weights,
 };
 use glam::DVec3;
 use serde_json::{Map, Value as Json, json};
@@ -230,6 +231,7 @@ fn shape_word(shape: &Shape) -> &'static str {
         Shape::Triangle(_) => "triangle",
         Shape::Mesh(_) => "mesh",
         Shape::Surface(surface) => surface.word(),
+        Shape::Skin(_) => "skin",
         Shape::Group(_) => "group",
         Shape::Csg(csg) => csg.op.word(),
         Shape::Implicit(_) => "implicit",
@@ -265,6 +267,7 @@ fn shape_properties(shape: &Shape) -> Vec<(&'static str, Json)> {
         }
         Shape::Mesh(mesh) => mesh_properties(mesh),
         Shape::Surface(surface) => surface_properties(surface),
+        Shape::Skin(skin) => skin_properties(skin),
         Shape::Group(_) => vec![],
         Shape::Implicit(implicit) => {
             let (min, max) = implicit.within;
@@ -309,6 +312,30 @@ fn surface_properties(surface: &Surface) -> Vec<(&'static str, Json)> {
             vec![("outline", path(&*extrude.outline)), ("along", along)]
         }
     }
+}
+
+fn skin_properties(skin: &Skin) -> Vec<(&'static str, Json)> {
+    let (word, mut properties) = match &skin.surface {
+        SkinSurface::Mesh(mesh) => ("mesh", mesh_properties(mesh)),
+        SkinSurface::Curved(surface) => (surface.word(), surface_properties(surface)),
+    };
+    let weights = match &skin.weights {
+        Weights::Rigid => "rigid",
+        Weights::Smooth(_) => "smooth",
+        Weights::Listed(..) => "listed",
+        Weights::Function(..) => "function",
+    };
+    let blend = match skin.blend {
+        Blend::Linear => "linear",
+        Blend::DualQuaternion => "dual_quaternion",
+    };
+    properties.splice(0..0, [("surface", json!(word))]);
+    properties.extend([
+        ("joints", json!(skin.armature.names)),
+        ("weights", json!(weights)),
+        ("blend", json!(blend)),
+    ]);
+    properties
 }
 
 /// A curve by where it begins and ends.
@@ -415,6 +442,7 @@ fn pattern(kind: &PatternKind) -> (&'static str, Json) {
             ("ramp", json!([texture(by), stops.collect::<Vec<_>>()]))
         }
         PatternKind::Image(image) => ("image", quoted(&image.path.display().to_string())),
+        PatternKind::Weight(joint) => ("weights_of", json!(joint)),
         PatternKind::Marble(a, b) => ("marble", pair(a, b)),
         PatternKind::Wood(a, b) => ("wood", pair(a, b)),
         PatternKind::Noise(a, b) => ("noise", pair(a, b)),

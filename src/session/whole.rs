@@ -1,7 +1,7 @@
 //! Faults of a scene as a whole: no camera, no light, nothing to see. Other renderers pass these in silence and show black.
 
 use crate::diag::{Code, Diagnostic};
-use crate::scene::{LightSource, Material, MeshSource, Node, Object, Scene, Shape, Texture};
+use crate::scene::{LightSource, Material, MeshSource, Node, Object, Scene, Shape, SkinSurface, Texture};
 use std::collections::HashSet;
 use std::sync::Arc;
 
@@ -76,6 +76,12 @@ impl Survey {
             Shape::Group(children) => {
                 if self.seen.insert(Arc::as_ptr(children)) {
                     self.walk(children);
+                }
+            }
+            Shape::Skin(skin) => {
+                self.objects = true;
+                if let SkinSurface::Mesh(mesh) = &skin.surface {
+                    self.shines |= matches!(**mesh, MeshSource::File { .. }) && object.material.is_none();
                 }
             }
             Shape::Mesh(mesh) => {

@@ -4,6 +4,7 @@
 //! clear of the surface whatever the rounding was, and no farther: no absolute distance appears. Pharr, Jakob & Humphreys,
 //! *Physically Based Rendering* (4th ed.) §6.8.
 
+use super::shape::mesh::WornPlace;
 use super::shape::perpendicular;
 use super::texture::TextureFault;
 use super::{PrimitiveId, Ray, RayKind};
@@ -30,6 +31,8 @@ pub struct Hit<'w> {
     pub uv: DVec2,
     /// The point in the object's own space before its transforms, for solid patterns.
     pub local_point: DVec3,
+    /// The place of the skin that was hit, for patterns of weights; none on what is no skin.
+    pub worn: Option<WornPlace<'w>>,
     /// The material.
     pub material: &'w Material,
     /// Why the surface is not known here: a function that makes it has no value. The pixel says so.

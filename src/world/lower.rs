@@ -4,6 +4,7 @@
 mod lights;
 mod meshes;
 mod shapes;
+mod skins;
 mod solids;
 mod surfaces;
 mod survey;
@@ -18,6 +19,7 @@ use crate::math::Affine;
 use crate::scene::assets::AssetCache;
 use crate::scene::{Accelerator, Hide, Light, LightSource, Material, Node, Object, Rgb, Shape, Texture};
 use meshes::Meshes;
+use skins::Skins;
 use solids::Solids;
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -74,6 +76,7 @@ fn lowered(
         placed: HashMap::new(),
         meshes: Meshes::default(),
         solids: Solids::default(),
+        skins: Skins::default(),
         surfaces: Surfaces::of(&nodes, options.footprint.as_ref()),
     };
     let world_group = lowering.group(Source::Owned(nodes.into_iter()), 0);
@@ -96,6 +99,7 @@ struct Lowering<'a> {
     placed: HashMap<*const Node, (u32, Arc<[Node]>)>,
     meshes: Meshes,
     solids: Solids,
+    skins: Skins,
     surfaces: Surfaces,
 }
 
@@ -238,6 +242,11 @@ impl Lowering<'_> {
             }
             Shape::Mesh(source) => {
                 let aggregate = self.mesh(source, span)?;
+                self.instance(group, aggregate, transform, facts);
+                None
+            }
+            Shape::Skin(skin) => {
+                let aggregate = self.skin(&skin, span)?;
                 self.instance(group, aggregate, transform, facts);
                 None
             }

@@ -85,18 +85,19 @@ impl World {
             local = local.into_local(transform)?.0;
         }
         let material = &self.materials[self.material_on(&path, shape, candidate) as usize];
-        let (surface, local_point) = match (shape, path.aggregate) {
+        let (surface, local_point, worn) = match (shape, path.aggregate) {
             (Some(Shape::Csg(csg)), _) => {
                 let part = csg.surface(&local, &candidate.meet);
-                (part.whole, part.own_point)
+                (part.whole, part.own_point, None)
             }
             (Some(shape), _) => {
                 let surface = shape.surface(&local, &candidate.meet);
-                (surface, surface.point)
+                (surface, surface.point, None)
             }
             (None, Aggregate::Mesh(mesh)) => {
                 let surface = mesh.shape.surface(candidate.id.part, &candidate.meet, material.bends_normal());
-                (surface, surface.point)
+                let worn = mesh.shape.worn_at(candidate.id.part, &candidate.meet);
+                (surface, worn.map_or(surface.point, |place| place.rest()), worn)
             }
             (None, Aggregate::Group(_)) => return None,
         };
@@ -111,6 +112,7 @@ impl World {
             along_u: world.tangent,
             uv: surface.uv,
             local_point,
+            worn,
             material,
             fault: shape.and_then(|shape| shape.fault(&local, &candidate.meet)),
             primitive: candidate.id,

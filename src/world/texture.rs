@@ -7,6 +7,7 @@ mod picture;
 pub use load::load_pictures;
 
 use super::Hit;
+use super::shape::mesh::WornPlace;
 use crate::diag::Span;
 use crate::math::Affine;
 use crate::math::colour::luminance;
@@ -20,7 +21,7 @@ use std::f64::consts::TAU;
 
 /// What a texture may ask of a point of a surface.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct TexturePoint {
+pub struct TexturePoint<'w> {
     /// The point in the object's own space before its transforms.
     pub local_point: DVec3,
     /// Surface parameters.
@@ -31,11 +32,14 @@ pub struct TexturePoint {
     pub normal: DVec3,
     /// Distance along the ray.
     pub t: f64,
+    /// The place of a skin; none on what is none.
+    pub worn: Option<WornPlace<'w>>,
 }
 
-impl From<&Hit<'_>> for TexturePoint {
-    fn from(hit: &Hit<'_>) -> Self {
+impl<'w> From<&Hit<'w>> for TexturePoint<'w> {
+    fn from(hit: &Hit<'w>) -> Self {
         TexturePoint {
+            worn: hit.worn,
             local_point: hit.local_point,
             uv: hit.uv,
             point: hit.point,
@@ -59,25 +63,25 @@ pub type Sampled<T> = Result<T, TextureFault>;
 
 /// The colour of a texture, linear RGB.
 #[inline]
-pub fn colour(texture: &Texture, at: &TexturePoint) -> Sampled<Rgb> {
+pub fn colour(texture: &Texture, at: &TexturePoint<'_>) -> Sampled<Rgb> {
     evaluate(texture, at, Reading::Colour)
 }
 
 /// Three numbers that are no colour: a tangent-space normal in 0 … 1.
 #[inline]
-pub fn data(texture: &Texture, at: &TexturePoint) -> Sampled<DVec3> {
+pub fn data(texture: &Texture, at: &TexturePoint<'_>) -> Sampled<DVec3> {
     evaluate(texture, at, Reading::Data)
 }
 
 /// A number: the luminance of what a texture says, pictures read as plain numbers.
 #[inline]
-pub fn number(texture: &Texture, at: &TexturePoint) -> Sampled<f64> {
+pub fn number(texture: &Texture, at: &TexturePoint<'_>) -> Sampled<f64> {
     evaluate(texture, at, Reading::Data).map(luminance)
 }
 
 /// The share of a surface that is there, 0 … 1: a picture with an alpha channel gives its alpha, anything else its number.
 #[inline]
-pub fn opacity(texture: &Texture, at: &TexturePoint) -> Sampled<f64> {
+pub fn opacity(texture: &Texture, at: &TexturePoint<'_>) -> Sampled<f64> {
     let Texture::Pattern(pattern) = texture else { return number(texture, at) };
     let PatternKind::Image(image) = &pattern.kind else { return number(texture, at) };
     match image.picture.get().filter(|picture| picture.has_alpha()) {
@@ -90,7 +94,7 @@ pub fn opacity(texture: &Texture, at: &TexturePoint) -> Sampled<f64> {
 }
 
 #[inline]
-fn evaluate(texture: &Texture, at: &TexturePoint, reading: Reading) -> Sampled<Rgb> {
+fn evaluate(texture: &Texture, at: &TexturePoint<'_>, reading: Reading) -> Sampled<Rgb> {
     match texture {
         Texture::Constant(value) => Ok(*value),
         Texture::Pattern(pattern) => rule(pattern, &moved(pattern, at), reading),
@@ -98,7 +102,7 @@ fn evaluate(texture: &Texture, at: &TexturePoint, reading: Reading) -> Sampled<R
 }
 
 /// The point as a pattern sees it: moved back by the pattern's transform, in space and in (u, v) alike.
-fn moved(pattern: &Pattern, at: &TexturePoint) -> TexturePoint {
+fn moved<'w>(pattern: &Pattern, at: &TexturePoint<'w>) -> TexturePoint<'w> {
     let Some(surface_from_pattern) = pattern.transform.as_deref() else { return *at };
     let pattern_from_surface = surface_from_pattern.inverse();
     TexturePoint {
@@ -112,7 +116,7 @@ fn uv_by(map: &Affine, uv: DVec2) -> DVec2 {
     map.point(uv.extend(0.0)).truncate()
 }
 
-fn rule(pattern: &Pattern, at: &TexturePoint, reading: Reading) -> Sampled<Rgb> {
+fn rule(pattern: &Pattern, at: &TexturePoint<'_>, reading: Reading) -> Sampled<Rgb> {
     let p = at.local_point;
     match &pattern.kind {
         PatternKind::Checker(a, b) => evaluate(if is_even_cell(p) { a } else { b }, at, reading),
@@ -126,6 +130,7 @@ fn rule(pattern: &Pattern, at: &TexturePoint, reading: Reading) -> Sampled<Rgb> 
         PatternKind::Noise(a, b) => mix(a, b, noise(&p.to_array()), at, reading),
         PatternKind::Marble(a, b) => mix(a, b, veins(p), at, reading),
         PatternKind::Wood(a, b) => mix(a, b, rings(p), at, reading),
+        PatternKind::Weight(joint) => Ok(Rgb::splat(at.worn.map_or(0.0, |place| place.weight(joint)))),
         PatternKind::Function(function) => call(function, at),
     }
 }
@@ -154,13 +159,13 @@ fn rings(p: DVec3) -> f64 {
 }
 
 /// (1 − t)·a + t·b, t clamped to 0 … 1.
-fn mix(a: &Texture, b: &Texture, t: f64, at: &TexturePoint, reading: Reading) -> Sampled<Rgb> {
+fn mix(a: &Texture, b: &Texture, t: f64, at: &TexturePoint<'_>, reading: Reading) -> Sampled<Rgb> {
     let t = t.clamp(0.0, 1.0);
     Ok(evaluate(a, at, reading)? * (1.0 - t) + evaluate(b, at, reading)? * t)
 }
 
 /// Piecewise linear between sorted stops, constant beyond them; of stops at one place the last counts from there on.
-fn ramp(x: f64, stops: &[(f64, Texture)], at: &TexturePoint, reading: Reading) -> Sampled<Rgb> {
+fn ramp(x: f64, stops: &[(f64, Texture)], at: &TexturePoint<'_>, reading: Reading) -> Sampled<Rgb> {
     let above = stops.partition_point(|(position, _)| *position <= x);
     match (above.checked_sub(1).and_then(|i| stops.get(i)), stops.get(above)) {
         (None, None) => Ok(Rgb::ZERO),
@@ -176,7 +181,7 @@ fn from_picture(image: &ImagePattern, uv: DVec2, reading: Reading) -> Sampled<Rg
     Ok(Rgb::new(texel[0], texel[1], texel[2]))
 }
 
-fn call(function: &SampledFunction, at: &TexturePoint) -> Sampled<Rgb> {
+fn call(function: &SampledFunction, at: &TexturePoint<'_>) -> Sampled<Rgb> {
     let mut out = [0.0; 3];
     let outputs = function.field.n_outputs().min(3);
     let (p, n) = (at.local_point, at.normal);

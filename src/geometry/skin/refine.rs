@@ -1,9 +1,13 @@
 //! Triangles made finer where the motion bends them: an edge is halved until the middle of its image is the image of its middle, within a
-//! tolerance. Whether an edge is halved follows from its ends alone, so that no crack opens between triangles, of one mesh or of two.
+//! tolerance, and with it the longest edge of each triangle that it is one of, so that triangles stay well shaped (slivers would be true in
+//! place and wrong in direction). Source: Rivara 1984, "Algorithms for refining triangular grids".
+//!
+//! Edges are told apart by where their ends are and not by their numbers, so that no crack opens where two triangles have vertices of their own
+//! in one place.
 
 use crate::geometry::mesh::Mesh;
 use glam::DVec3;
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 /// Halvings of an edge at most. A motion that tears never settles; 2⁻⁸ of an edge is as near as it is followed.
 const MOST_HALVINGS: usize = 8;
@@ -13,99 +17,171 @@ pub type Images<'f, E> = dyn Fn(&[DVec3]) -> Result<Vec<DVec3>, E> + 'f;
 
 /// Halves edges of a mesh until `images` (of points to where a motion takes them) are straight along them within `tolerance`.
 pub fn refine<E>(mesh: &mut Mesh, tolerance: f64, images: &Images<'_, E>) -> Result<(), E> {
-    let mut moved = images(&mesh.positions)?;
-    let mut waiting: Vec<[u32; 2]> = edges(&mesh.triangles);
-    for _ in 0..MOST_HALVINGS {
-        let halved = bent(mesh, &mut moved, &waiting, tolerance, images)?;
-        if halved.is_empty() {
+    let mut places = Places::of(&mesh.positions);
+    let mut moved = images(&places.points)?;
+    let mut fresh = mesh.triangles.clone();
+    // Each halving of an edge may come with one of the longest edge beside it.
+    for _ in 0..2 * MOST_HALVINGS {
+        let bent = bent(&places, &moved, &fresh, tolerance, images)?;
+        if bent.is_empty() {
             break;
         }
-        waiting = split(mesh, &halved);
+        let halved = with_longest(&places, &mesh.triangles, bent);
+        fresh = split(mesh, &mut places, &halved);
+        moved.extend(images(&places.points[moved.len()..])?);
     }
     Ok(())
 }
 
-/// The middle of an edge, by the numbers of its ends in rising order.
-type Middles = HashMap<[u32; 2], u32>;
+/// The places of vertices: those in one place share a number.
+struct Places {
+    of_vertex: Vec<u32>,
+    points: Vec<DVec3>,
+    /// The number of the middle of two places, where it was made.
+    middles: HashMap<Edge, u32>,
+}
 
-/// Adds the middles of those edges whose images are not straight.
+/// Two places, the lower number first.
+type Edge = [u32; 2];
+
+impl Places {
+    fn of(positions: &[DVec3]) -> Places {
+        let mut places = Places { of_vertex: Vec::new(), points: Vec::new(), middles: HashMap::new() };
+        let mut known: HashMap<[u64; 3], u32> = HashMap::with_capacity(positions.len());
+        for p in positions {
+            // 0 takes the sign away from −0.
+            let bits = (*p + DVec3::ZERO).to_array().map(f64::to_bits);
+            let place = *known.entry(bits).or_insert_with(|| {
+                places.points.push(*p);
+                places.points.len() as u32 - 1
+            });
+            places.of_vertex.push(place);
+        }
+        places
+    }
+
+    fn edge(&self, a: u32, b: u32) -> Edge {
+        let [a, b] = [a, b].map(|vertex| self.of_vertex[vertex as usize]);
+        [a.min(b), a.max(b)]
+    }
+
+    fn edges(&self, [a, b, c]: [u32; 3]) -> [Edge; 3] {
+        [self.edge(a, b), self.edge(b, c), self.edge(c, a)]
+    }
+
+    fn length_squared(&self, [a, b]: Edge) -> f64 {
+        self.points[a as usize].distance_squared(self.points[b as usize])
+    }
+
+    fn middle(&mut self, edge: Edge) -> u32 {
+        *self.middles.entry(edge).or_insert_with(|| {
+            self.points.push(middle(&self.points, edge));
+            self.points.len() as u32 - 1
+        })
+    }
+}
+
+fn middle(of: &[DVec3], [a, b]: Edge) -> DVec3 {
+    (of[a as usize] + of[b as usize]) * 0.5
+}
+
+/// The edges of some triangles whose images are not straight.
 fn bent<E>(
-    mesh: &mut Mesh,
-    moved: &mut Vec<DVec3>,
-    edges: &[[u32; 2]],
+    places: &Places,
+    moved: &[DVec3],
+    triangles: &[[u32; 3]],
     tolerance: f64,
     images: &Images<'_, E>,
-) -> Result<Middles, E> {
-    let middle = |of: &[DVec3], [a, b]: [u32; 2]| (of[a as usize] + of[b as usize]) * 0.5;
-    let middles: Vec<DVec3> = edges.iter().map(|edge| middle(&mesh.positions, *edge)).collect();
+) -> Result<HashSet<Edge>, E> {
+    let mut edges: Vec<Edge> = triangles.iter().flat_map(|t| places.edges(*t)).collect();
+    edges.sort_unstable();
+    edges.dedup();
+    // An edge of two finer triangles may be halved from the other side already.
+    edges.retain(|edge| !places.middles.contains_key(edge));
+    let middles: Vec<DVec3> = edges.iter().map(|edge| middle(&places.points, *edge)).collect();
     let images = images(&middles)?;
-    let mut halved = Middles::new();
-    for ((edge, p), image) in edges.iter().zip(middles).zip(images) {
-        if image.distance(middle(moved, *edge)) <= tolerance {
-            continue;
-        }
-        halved.insert(*edge, mesh.positions.len() as u32);
-        let [a, b] = edge.map(|k| k as usize);
-        if !mesh.normals.is_empty() {
-            let normal = (mesh.normals[a] + mesh.normals[b]).try_normalize().unwrap_or(mesh.normals[a]);
-            mesh.normals.push(normal);
-        }
-        if !mesh.uvs.is_empty() {
-            mesh.uvs.push((mesh.uvs[a] + mesh.uvs[b]) * 0.5);
-        }
-        mesh.positions.push(p);
-        moved.push(image);
-    }
-    Ok(halved)
+    let straight = |(edge, image): &(Edge, DVec3)| image.distance(middle(moved, *edge)) <= tolerance;
+    Ok(edges.into_iter().zip(images).filter(|one| !straight(one)).map(|(edge, _)| edge).collect())
 }
 
-/// Cuts the triangles whose edges have middles. Gives the edges that this made.
-fn split(mesh: &mut Mesh, middles: &Middles) -> Vec<[u32; 2]> {
-    let (before, materials) =
-        (std::mem::take(&mut mesh.triangles), std::mem::take(&mut mesh.material_of_triangle));
-    let mut fresh = Vec::new();
+/// Those edges, with the longest edge of each triangle that has one of them, and of each that has one of those.
+fn with_longest(places: &Places, triangles: &[[u32; 3]], mut halved: HashSet<Edge>) -> HashSet<Edge> {
+    loop {
+        let before = halved.len();
+        for triangle in triangles {
+            let edges = places.edges(*triangle);
+            if edges.iter().any(|edge| halved.contains(edge)) {
+                let longer = |a: Edge, b: Edge| {
+                    let by_length = places.length_squared(a).total_cmp(&places.length_squared(b));
+                    if by_length.then(a.cmp(&b)).is_ge() { a } else { b }
+                };
+                halved.insert(longer(longer(edges[0], edges[1]), edges[2]));
+            }
+        }
+        if halved.len() == before {
+            return halved;
+        }
+    }
+}
+
+/// Cuts the triangles that have such edges. Gives those that this made.
+fn split(mesh: &mut Mesh, places: &mut Places, halved: &HashSet<Edge>) -> Vec<[u32; 3]> {
+    let before = std::mem::take(&mut mesh.triangles);
+    let materials = std::mem::take(&mut mesh.material_of_triangle);
+    let (mut after, mut fresh) = (Vec::with_capacity(before.len()), Vec::new());
+    let mut vertices: HashMap<[u32; 2], u32> = HashMap::new();
     for (k, triangle) in before.into_iter().enumerate() {
-        let start = mesh.triangles.len();
-        cut(triangle, middles, &mut mesh.triangles);
-        if mesh.triangles.len() > start + 1 {
-            fresh.extend_from_slice(&mesh.triangles[start..]);
+        let middles = [0, 1, 2].map(|side| {
+            let (a, b) = (triangle[side], triangle[(side + 1) % 3]);
+            let edge = places.edge(a, b);
+            let is_halved = halved.contains(&edge);
+            is_halved.then(|| {
+                *vertices.entry([a.min(b), a.max(b)]).or_insert_with(|| halve(mesh, places, [a, b], edge))
+            })
+        });
+        let start = after.len();
+        cut(triangle, middles, &mut after);
+        if after.len() > start + 1 {
+            fresh.extend_from_slice(&after[start..]);
         }
         if let Some(material) = materials.get(k) {
-            mesh.material_of_triangle.resize(mesh.triangles.len(), *material);
+            mesh.material_of_triangle.resize(after.len(), *material);
         }
     }
-    edges(&fresh)
+    mesh.triangles = after;
+    fresh
 }
 
-/// A triangle in as many parts as its edges' middles make.
-fn cut(triangle: [u32; 3], middles: &Middles, into: &mut Vec<[u32; 3]>) {
-    let middle = |k: usize| middles.get(&key(triangle[k], triangle[(k + 1) % 3])).copied();
-    // Turned so that the first corner is before a halved edge, and, of two, the second edge is the other.
-    let halved = [0, 1, 2].map(|k| middle(k).is_some());
-    let first = match halved {
+/// A vertex in the middle of two.
+fn halve(mesh: &mut Mesh, places: &mut Places, vertices: [u32; 2], edge: Edge) -> u32 {
+    let [a, b] = vertices.map(|k| k as usize);
+    let place = places.middle(edge);
+    places.of_vertex.push(place);
+    mesh.positions.push(places.points[place as usize]);
+    if !mesh.normals.is_empty() {
+        let normal = (mesh.normals[a] + mesh.normals[b]).try_normalize().unwrap_or(mesh.normals[a]);
+        mesh.normals.push(normal);
+    }
+    if !mesh.uvs.is_empty() {
+        mesh.uvs.push((mesh.uvs[a] + mesh.uvs[b]) * 0.5);
+    }
+    mesh.positions.len() as u32 - 1
+}
+
+/// A triangle in as many parts as its edges' middles make; `middles` by the corner before each edge.
+fn cut(triangle: [u32; 3], middles: [Option<u32>; 3], into: &mut Vec<[u32; 3]>) {
+    // Turned so that the first edge is halved, and, of two, the second is the other.
+    let first = match middles.map(|m| m.is_some()) {
         [true, true, true] | [false, false, false] | [true, _, false] => 0,
         [false, true, _] => 1,
         [_, false, true] => 2,
     };
     let [a, b, c] = [0, 1, 2].map(|k| triangle[(first + k) % 3]);
-    let [ab, bc, ca] = [0, 1, 2].map(|k| middle((first + k) % 3));
+    let [ab, bc, ca] = [0, 1, 2].map(|k| middles[(first + k) % 3]);
     match (ab, bc, ca) {
         (Some(ab), Some(bc), Some(ca)) => into.extend([[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]]),
         (Some(ab), Some(bc), None) => into.extend([[ab, b, bc], [a, ab, bc], [a, bc, c]]),
         (Some(ab), None, _) => into.extend([[a, ab, c], [ab, b, c]]),
         (None, ..) => into.push(triangle),
     }
-}
-
-fn key(a: u32, b: u32) -> [u32; 2] {
-    [a.min(b), a.max(b)]
-}
-
-/// The edges of triangles, each once.
-fn edges(triangles: &[[u32; 3]]) -> Vec<[u32; 2]> {
-    let mut all: Vec<[u32; 2]> =
-        triangles.iter().flat_map(|&[a, b, c]| [key(a, b), key(b, c), key(c, a)]).collect();
-    all.sort_unstable();
-    all.dedup();
-    all
 }

@@ -3,7 +3,7 @@
 use crate::diag::{Code, Diagnostic, Span};
 use crate::lang::check;
 use crate::lang::coerce;
-use crate::lang::table::{Arguments, Builtin, BuiltinBody::*, Context, Outcome, Parameter, Type};
+use crate::lang::table::{Arguments, Builtin, BuiltinBody::*, Context, Gives, Outcome, Parameter, Type};
 use crate::lang::value::Value;
 use crate::scene::assets::image::Picture;
 use crate::scene::{Filter, ImagePattern, Pattern, PatternKind, SampleInput, Texture, Wrap};
@@ -77,6 +77,13 @@ pub static ALL: &[Builtin] = &[
         "A pattern from a function of the whole hit: `h.p` the point in the world, `h.n` the normal, `h.uv`, `h.t` \
          the distance along the ray.",
         ("from_hit(h => abs(h.n))", "a pattern"),
+    ),
+    Builtin::new(
+        "weights_of",
+        &[Parameter::new("joint", "a joint's name, bare or as a text")  .bare()],
+        General(weights_of),
+        "How much a joint moves each point of a skin, 0 to 1; 0 on what is no skin. In a `ramp`, a heat map.",
+        ("ramp(weights_of(elbow), [0, navy], [0.5, yellow], [1, red])", "a pattern"),
     ),
     Builtin::new(
         "marble",
@@ -253,7 +260,16 @@ fn choice<T: Copy>(
     }))
 }
 
+fn weights_of(ctx: &mut dyn Context, arguments: &Arguments<'_>) -> Outcome {
+    let (Value::Text(joint) | Value::Word(joint)) = &arguments.values[0] else {
+        let builtin = super::find("weights_of").expect("a function of the table");
+        return Err(ctx.fail(super::wrong_argument(builtin, 0, &arguments.values[0], arguments.spans[0])));
+    };
+    made(ctx, PatternKind::Weight((**joint).into()), arguments.span)
+}
+
 fn from_hit(ctx: &mut dyn Context, arguments: &Arguments<'_>) -> Outcome {
-    let function = ctx.sampled(&arguments.values[0], SampleInput::Hit, &[1, 3], arguments.spans[0])?;
+    let function =
+        ctx.sampled(&arguments.values[0], SampleInput::Hit, Gives::Components(&[1, 3]), arguments.spans[0])?;
     made(ctx, PatternKind::Function(function), arguments.span)
 }

@@ -13,7 +13,7 @@ mod symbol;
 
 use super::eval::slots::{Captured, Empty, Slot};
 use super::resolve::program::{Function, FunctionBody, FunctionId, Program};
-use super::table::{Context, Reported};
+use super::table::{Context, Gives, Reported};
 use super::value::Value;
 use crate::diag::{Code, Diagnostic, Frame as TraceFrame, Span};
 use crate::math::field::{FieldBuilder, Register};
@@ -28,8 +28,8 @@ pub struct Request<'r> {
     pub function: &'r Value,
     /// What its inputs are.
     pub input: SampleInput,
-    /// How many numbers it may give.
-    pub outputs: &'r [usize],
+    /// What it is to give.
+    pub gives: Gives<'r>,
     /// Where it was given.
     pub at: Span,
 }
@@ -171,8 +171,12 @@ impl<'c> Compiler<'c> {
             }
         };
         let span = self.result_span(request).unwrap_or(span);
-        match self.components(&symbol) {
-            Some(registers) if request.outputs.contains(&registers.len()) => Ok((registers, span)),
+        let (registers, fits) = match request.gives {
+            Gives::Components(counts) => (self.components(&symbol), counts),
+            Gives::List(count) => (self.numbers(&symbol), &[count][..]),
+        };
+        match registers {
+            Some(registers) if fits.contains(&registers.len()) => Ok((registers, span)),
             _ => Err(self.wrong_result(request, &symbol, span)),
         }
     }
@@ -201,18 +205,17 @@ impl<'c> Compiler<'c> {
     }
 
     fn wrong_result(&mut self, request: &Request<'_>, symbol: &Symbol, span: Span) -> Stop {
-        let wanted: Vec<&str> = request
-            .outputs
-            .iter()
-            .map(|n| match n {
-                1 => "a number",
-                2 => "a 2-vector",
-                3 => "a colour or 3-vector",
-                _ => "a 4-vector",
-            })
-            .collect();
-        let message =
-            format!("this function gives {}, where {} is needed", symbol.shown(), wanted.join(" or "));
+        let word = |n: &usize| match n {
+            1 => "a number",
+            2 => "a 2-vector",
+            3 => "a colour or 3-vector",
+            _ => "a 4-vector",
+        };
+        let wanted = match request.gives {
+            Gives::Components(counts) => counts.iter().map(word).collect::<Vec<_>>().join(" or "),
+            Gives::List(count) => format!("a list of {count} numbers"),
+        };
+        let message = format!("this function gives {}, where {wanted} is needed", symbol.shown());
         Diagnostic::new(Code::NotSampled, span, message).into()
     }
 

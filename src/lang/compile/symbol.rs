@@ -99,6 +99,16 @@ impl Compiler<'_> {
         }
     }
 
+    /// The registers of a list of numbers, one for each.
+    pub(super) fn numbers(&mut self, symbol: &Symbol) -> Option<Vec<Register>> {
+        let elements = symbol.elements()?;
+        let each = elements.iter().map(|element| match self.components(element)?[..] {
+            [register] => Some(register),
+            _ => None,
+        });
+        each.collect()
+    }
+
     /// The registers of anything that registers can hold, with its shape.
     pub(super) fn held(&mut self, symbol: &Symbol) -> Option<(Shape, Vec<Register>)> {
         match symbol {

@@ -4,7 +4,7 @@ use super::{Evaluator, Said};
 use crate::diag::{Diagnostic, Span};
 use crate::lang::compile;
 use crate::lang::members;
-use crate::lang::table::{Context, Outcome, Trace};
+use crate::lang::table::{Context, Gives, Outcome, Trace};
 use crate::lang::value::Value;
 use crate::scene::assets::Loader;
 use crate::scene::{SampleInput, SampledFunction};
@@ -50,11 +50,11 @@ impl Context for Evaluator<'_> {
         &mut self,
         function: &Value,
         input: SampleInput,
-        outputs: &[usize],
+        gives: Gives<'_>,
         at: Span,
     ) -> Outcome<Arc<SampledFunction>> {
         let program = self.program;
-        compile::compile(self, program, &compile::Request { function, input, outputs, at }).map(Arc::new)
+        compile::compile(self, program, &compile::Request { function, input, gives, at }).map(Arc::new)
     }
 
     fn reserve(&mut self, elements: usize, at: Span) -> Outcome<()> {

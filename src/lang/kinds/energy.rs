@@ -107,6 +107,7 @@ fn greatest(texture: &Texture) -> Rgb {
             | PatternKind::Wood(a, b) => greatest(a).max(greatest(b)),
             PatternKind::Stripes(all) => all.iter().map(greatest).fold(Rgb::ZERO, Rgb::max),
             PatternKind::Ramp(_, stops) => stops.iter().map(|(_, t)| greatest(t)).fold(Rgb::ZERO, Rgb::max),
+            PatternKind::Weight(_) => Rgb::ONE,
             PatternKind::Image(_) | PatternKind::Function(_) => Rgb::ZERO,
         },
     }

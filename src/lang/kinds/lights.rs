@@ -227,6 +227,7 @@ fn emitter(ctx: &mut dyn Context, block: &Block) -> Outcome<Arc<Object>> {
         | Shape::Cone(_)
         | Shape::Torus(_)
         | Shape::Surface(_)
+        | Shape::Skin(_)
         | Shape::Group(_)
         | Shape::Csg(_)
         | Shape::Implicit(_) => {

@@ -12,6 +12,7 @@ mod read;
 mod rigs;
 mod settings;
 mod shapes;
+mod skins;
 mod solids;
 pub mod splines;
 mod surfaces;
@@ -56,7 +57,7 @@ pub static ALL: &[&Kind] = &[
     &solids::UNION,
     &solids::INTERSECTION,
     &solids::DIFFERENCE,
-    &unbuilt::SKIN,
+    &skins::SKIN,
     &unbuilt::MODEL,
     &rigs::SKELETON,
     &rigs::JOINT,

@@ -2,7 +2,7 @@
 
 use super::shapes::finish;
 use crate::diag::Code;
-use crate::lang::table::{Block, Context, Kind, Outcome, Property, Role, Type};
+use crate::lang::table::{Block, Context, Gives, Kind, Outcome, Property, Role, Type};
 use crate::lang::value::{Given, Value};
 use crate::scene::{Csg, CsgOp, Implicit, Node, SampleInput, Shape, solid_fault};
 use std::collections::HashSet;
@@ -99,7 +99,7 @@ fn implicit(ctx: &mut dyn Context, block: Block) -> Outcome {
         outcome = Err(block.fault(ctx, Code::BadGeometry, "within", message, hint));
     }
     let f = block.value("f").expect("checked to be there").clone();
-    let function = ctx.sampled(&f, SampleInput::Point, &[1], block.place("f"))?;
+    let function = ctx.sampled(&f, SampleInput::Point, Gives::Components(&[1]), block.place("f"))?;
     outcome?;
     let gradient = block.number("gradient").map(|bound| (bound, block.place("gradient")));
     finish(ctx, &block, Shape::Implicit(Arc::new(Implicit { function, within, gradient })))

@@ -12,34 +12,6 @@ const fn unbuilt(
     Kind { name, doc, example, role, own, children: false, open: false, build: None }
 }
 
-/// A skinned surface.
-pub static SKIN: Kind = unbuilt(
-    "skin",
-    "A surface that bends with a skeleton.",
-    "skeleton arm { joint elbow { hinge z  tip hand { offset <5, 0, 0> } } }\npose bent { of arm  elbow 40 }\n\
-     spline limb { natural <0, 0, 0>, <2, 0, 0>, <5, 0, 0> }\nskin { surface tube { along limb  radius 0.5 }  skeleton arm  pose bent }",
-    Role::Object,
-    &[
-        Property::new("surface", &[&[Type::Object]], "", "any mesh-like object, in rest position").required(),
-        Property::new("skeleton", &[&[Type::Skeleton]], "", "the skeleton that moves it").required(),
-        Property::new("pose", &[&[Type::Pose]], "", "the pose it takes; the rest pose by default"),
-        Property::new(
-            "weights",
-            &[&[Type::Word(&["rigid", "smooth"])], &[Type::List], &[Type::Function]],
-            "smooth",
-            "how much each joint moves each vertex: by rule, as a list for each vertex, or a function of the point",
-        ),
-        Property::new("influences", &[&[Type::Integer { min: 1 }]], "4", "most joints that move one vertex"),
-        Property::new(
-            "blend",
-            &[&[Type::Word(&["linear", "dual_quaternion"])]],
-            "linear",
-            "how the joints' motions are mixed",
-        ),
-        Property::new("show", &[&[Type::Word(&["bones"])]], "", "draws the skeleton"),
-    ],
-);
-
 /// A glTF model.
 pub static MODEL: Kind = unbuilt(
     "model",

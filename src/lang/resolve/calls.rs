@@ -17,6 +17,8 @@ struct Callee<'c> {
     name: &'c str,
     parameters: Vec<(&'c str, bool)>,
     variadic: bool,
+    /// The parameter that takes a name of the author's own, which may stand bare.
+    bare: Option<usize>,
     /// Where it is declared, for a second label.
     span: Option<Span>,
 }
@@ -98,17 +100,27 @@ impl<'a> Resolver<'a> {
             let name = a.name.as_ref().map(|n| (self.word(&n.name), n.span));
             let bare = members::takes_bare(method, position, name.as_ref().map(|(name, _)| &**name));
             // Of a method that no value has, that is what must be said.
-            let astray = |resolver: &Self, name| !members::is_member(method) && !resolver.in_scope(name);
-            let value = match &a.value.kind {
-                ast::ExprKind::Name(name) if bare || astray(self, name) => {
-                    let word = Value::Word(self.word(name));
-                    Expr { kind: ExprKind::Constant(Box::new(word)), span: a.value.span }
-                }
-                _ => self.expr(&a.value),
-            };
+            let astray = !members::is_member(method) && self.is_unknown(&a.value);
+            let value = self.word_or_expr(&a.value, bare || astray);
             arguments.push(Argument { name, value });
         }
         arguments
+    }
+
+    /// Whether this is a name that nothing has.
+    fn is_unknown(&self, e: &ast::Expr) -> bool {
+        matches!(&e.kind, ast::ExprKind::Name(name) if !self.in_scope(name))
+    }
+
+    /// A name as the word that it is, where it stands for itself; anything else as an expression.
+    fn word_or_expr(&mut self, e: &'a ast::Expr, stands_for_itself: bool) -> Expr {
+        match &e.kind {
+            ast::ExprKind::Name(name) if stands_for_itself => {
+                let word = Value::Word(self.word(name));
+                Expr { kind: ExprKind::Constant(Box::new(word)), span: e.span }
+            }
+            _ => self.expr(e),
+        }
     }
 
     fn call_value(&mut self, callee: Expr, call: &'a ast::Call) -> ExprKind {
@@ -123,6 +135,7 @@ impl<'a> Resolver<'a> {
             name: &signature.name,
             parameters: signature.parameters.iter().map(|(n, default)| (&**n, *default)).collect(),
             variadic: false,
+            bare: None,
             span: Some(signature.span),
         };
         match self.matched(&callee, call) {
@@ -138,6 +151,7 @@ impl<'a> Resolver<'a> {
             name: builtin.name,
             parameters: builtin.parameters.iter().map(|p| (p.name, p.default.is_some())).collect(),
             variadic: builtin.variadic,
+            bare: builtin.parameters.iter().position(|p| p.bare),
             span: None,
         };
         let Some(mut arguments) = self.matched(&callee, call) else { return ExprKind::Poison };
@@ -162,12 +176,19 @@ impl<'a> Resolver<'a> {
         let mut matched: Vec<(u32, Expr)> = Vec::with_capacity(call.arguments.len());
         let mut sound = true;
         for (position, argument) in call.arguments.iter().enumerate() {
-            let value = self.expr(&argument.value);
+            let fills = argument
+                .name
+                .as_ref()
+                .map_or(Some(position), |name| callee.parameters.iter().position(|(p, _)| **p == *name.name));
+            // A variable may hold the name instead.
+            let bare = callee.bare.is_some() && fills == callee.bare;
+            let stands_for_itself = bare && self.is_unknown(&argument.value);
+            let value = self.word_or_expr(&argument.value, stands_for_itself);
             let Some(name) = &argument.name else {
                 matched.push((position as u32, value));
                 continue;
             };
-            match callee.parameters.iter().position(|(p, _)| **p == *name.name) {
+            match fills {
                 Some(i) if matched.iter().any(|(filled, _)| *filled as usize == i) => {
                     sound = false;
                     self.report(Diagnostic::new(

@@ -119,7 +119,7 @@ impl Bsdf {
         mirror: Mirror::None,
     };
 
-    fn add_layers(&mut self, material: &Material, at: &TexturePoint) -> Sampled<()> {
+    fn add_layers(&mut self, material: &Material, at: &TexturePoint<'_>) -> Sampled<()> {
         let layers = material.layers();
         let colour = |t| texture::colour(t, at);
         let number = |t| texture::number(t, at);
@@ -143,7 +143,7 @@ impl Bsdf {
         Ok(())
     }
 
-    fn bend_normal(&mut self, world: &World, hit: &Hit<'_>, ray: &Ray, at: &TexturePoint) -> Sampled<()> {
+    fn bend_normal(&mut self, world: &World, hit: &Hit<'_>, ray: &Ray, at: &TexturePoint<'_>) -> Sampled<()> {
         if let Some(n) = normal::bent(world, hit, ray, at)? {
             let side = if self.outside { 1.0 } else { -1.0 };
             self.normal = normal::facing(n * side, self.geometric, self.wo);

@@ -24,7 +24,7 @@ pub(super) fn onto_side(v: DVec3, side: DVec3) -> DVec3 {
 }
 
 /// The normal by `normal_map` and `bump` on the outside of the surface; none where neither is given.
-pub(super) fn bent(world: &World, hit: &Hit<'_>, ray: &Ray, at: &TexturePoint) -> Sampled<Option<DVec3>> {
+pub(super) fn bent(world: &World, hit: &Hit<'_>, ray: &Ray, at: &TexturePoint<'_>) -> Sampled<Option<DVec3>> {
     let layers = hit.material.layers();
     let mapped = match &layers.normal_map {
         Some(map) => Some(mapped(map, hit, at)?),
@@ -39,7 +39,7 @@ pub(super) fn bent(world: &World, hit: &Hit<'_>, ray: &Ray, at: &TexturePoint) -
 }
 
 /// A map's blue leaves the surface, its red goes along growing u, its green along n × that.
-fn mapped(map: &Texture, hit: &Hit<'_>, at: &TexturePoint) -> Sampled<DVec3> {
+fn mapped(map: &Texture, hit: &Hit<'_>, at: &TexturePoint<'_>) -> Sampled<DVec3> {
     let c = texture::data(map, at)? * 2.0 - DVec3::ONE;
     let tangent = hit.tangent();
     let n = tangent * c.x + hit.normal.cross(tangent) * c.y + hit.normal * c.z;
@@ -53,7 +53,7 @@ fn bumped(
     world: &World,
     hit: &Hit<'_>,
     ray: &Ray,
-    at: &TexturePoint,
+    at: &TexturePoint<'_>,
     normal: DVec3,
 ) -> Sampled<DVec3> {
     let height = texture::number(bump, at)?;

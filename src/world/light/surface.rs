@@ -132,7 +132,7 @@ impl AreaLight {
             Texture::Pattern(_) => {
                 let local_point = self.local_from_world.point(at.point);
                 let (point, normal, t) = (at.point, at.normal, distance);
-                let point = TexturePoint { local_point, uv, point, normal, t };
+                let point = TexturePoint { local_point, uv, point, normal, t, worn: None };
                 texture::colour(&self.emission, &point).unwrap_or(Rgb::ZERO)
             }
         }

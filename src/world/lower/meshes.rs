@@ -7,7 +7,7 @@ use crate::scene::assets::obj::load_obj;
 use crate::scene::{Material, MeshSource};
 use crate::world::aggregate::{Aggregate, MeshAggregate};
 use crate::world::shape::EVERYTHING;
-use crate::world::shape::mesh::MeshShape;
+use crate::world::shape::mesh::{MeshShape, Worn};
 use std::collections::HashMap;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -54,7 +54,11 @@ impl Lowering<'_> {
         }
     }
 
-    fn read_mesh(&mut self, key: &(PathBuf, Option<bool>), span: Span) -> (Option<Mesh>, Vec<Arc<Material>>) {
+    pub(super) fn read_mesh(
+        &mut self,
+        key: &(PathBuf, Option<bool>),
+        span: Span,
+    ) -> (Option<Mesh>, Vec<Arc<Material>>) {
         match load_obj(self.assets, &key.0, key.1, span) {
             Ok(loaded) => {
                 self.sink.extend(loaded.warnings);
@@ -69,13 +73,24 @@ impl Lowering<'_> {
 
     /// Builds the tree of a mesh.
     pub(super) fn keep_mesh(&mut self, mesh: Mesh, materials: Vec<Arc<Material>>, span: Span) -> Option<u32> {
+        self.keep_worn(mesh, None, materials, span)
+    }
+
+    /// Builds the tree of a mesh that may be a skin.
+    pub(super) fn keep_worn(
+        &mut self,
+        mesh: Mesh,
+        worn: Option<Worn>,
+        materials: Vec<Arc<Material>>,
+        span: Span,
+    ) -> Option<u32> {
         if mesh.triangles.is_empty() {
             let message = "this mesh has no triangles: nothing of it is seen";
             self.sink.push(Diagnostic::new(Code::MeshRepaired, span, message));
             return None;
         }
         let materials = materials.into_iter().map(|m| self.materials.number(m)).collect();
-        let shape = Arc::new(MeshShape::new(Arc::new(mesh), self.with_trees));
+        let shape = Arc::new(MeshShape::new(Arc::new(mesh), worn, self.with_trees));
         let bounds = if shape.tree.is_unbounded() { EVERYTHING } else { shape.tree.bounds() };
         Some(self.keep(Aggregate::Mesh(MeshAggregate { shape, bounds, materials })))
     }

@@ -35,7 +35,7 @@ pub(super) struct Surfaces {
     /// By address; the source is kept so that no other takes its place.
     by_source: HashMap<*const Surface, (Option<Drawn>, Arc<Surface>)>,
     by_file: HashMap<PathBuf, Option<Arc<Patch>>>,
-    views: HashMap<*const Surface, Views>,
+    views: HashMap<*const (), Views>,
 }
 
 /// Part of a pixel that triangles may be off by where nothing is said: under a quarter.
@@ -54,6 +54,18 @@ impl Surfaces {
     }
 }
 
+impl Surfaces {
+    /// From where something that a tolerance is asked for is seen; none where nothing is known of that.
+    pub fn views_of<T>(&mut self, source: &Arc<T>) -> Option<Views> {
+        self.views.remove(&Arc::as_ptr(source).cast())
+    }
+}
+
+/// The tolerance of triangles near a box, seen like this, of something of a size.
+pub(super) fn tolerance(views: &Views, near: Aabb, size: f64) -> f64 {
+    (PART_OF_PIXEL * views.pixel(near)).max(FINEST * size)
+}
+
 impl Lowering<'_> {
     /// What a surface is drawn as.
     pub(super) fn surface(&mut self, source: Arc<Surface>, span: Span) -> Option<Drawn> {
@@ -61,7 +73,7 @@ impl Lowering<'_> {
         if let Some((known, _)) = self.surfaces.by_source.get(&address) {
             return known.clone();
         }
-        let views = self.surfaces.views.remove(&address);
+        let views = self.surfaces.views_of(&source);
         let drawn = match &*source {
             Surface::Patch(patch) => self.patch(patch, views, span),
             Surface::Tube(_) | Surface::Lathe(_) | Surface::Extrude(_) => match form(&source) {
@@ -96,7 +108,7 @@ impl Lowering<'_> {
                     Some(tolerance) => tessellate::tessellate(patch, &|_| tolerance),
                     None => tessellate::tessellate(patch, &|points| {
                         let around = Aabb::of(points.iter().copied());
-                        (PART_OF_PIXEL * views.pixel(around)).max(FINEST * around.size().length())
+                        tolerance(&views, around, around.size().length())
                     }),
                 };
                 self.keep_mesh(mesh, Vec::new(), span).map(Drawn::Mesh)
@@ -106,7 +118,7 @@ impl Lowering<'_> {
     }
 
     /// The patches of a file, read once.
-    fn patch_file(&mut self, path: &PathBuf, span: Span) -> Option<Arc<Patch>> {
+    pub(super) fn patch_file(&mut self, path: &PathBuf, span: Span) -> Option<Arc<Patch>> {
         if let Some(known) = self.surfaces.by_file.get(path) {
             return known.clone();
         }
@@ -123,7 +135,7 @@ impl Lowering<'_> {
 }
 
 /// The kernel of a surface along curves. Its language looked for faults already; other makers may not have.
-fn form(source: &Surface) -> Result<Form, String> {
+pub(super) fn form(source: &Surface) -> Result<Form, String> {
     match source {
         Surface::Tube(tube) => {
             let (path, radius) = (of_measured(&tube.along), tube.radius.pieces());

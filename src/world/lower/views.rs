@@ -1,7 +1,7 @@
-//! From where each patch of a scene is seen, through all its placements: what its tolerance follows from.
+//! From where each patch and skin of a scene is seen, through all its placements: what its tolerance follows from.
 
 use crate::math::{Aabb, Affine};
-use crate::scene::{LightSource, Node, Object, Shape, Surface};
+use crate::scene::{LightSource, Node, Object, Shape};
 use crate::world::Footprint;
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -31,8 +31,8 @@ impl Views {
     }
 }
 
-/// The views of every patch of some nodes, by its address. A patch that is missing was not reached.
-pub(super) fn survey(nodes: &[Node], camera: &Footprint) -> HashMap<*const Surface, Views> {
+/// The views of every surface and skin of some nodes, by its address. One that is missing was not reached.
+pub(super) fn survey(nodes: &[Node], camera: &Footprint) -> HashMap<*const (), Views> {
     let mut walk = Walk { holds: HashMap::new(), views: HashMap::new(), visited: 0 };
     if !walk.holds_patch(nodes) {
         return HashMap::new();
@@ -44,7 +44,7 @@ pub(super) fn survey(nodes: &[Node], camera: &Footprint) -> HashMap<*const Surfa
 struct Walk {
     /// Whether a group holds a patch anywhere, by the address of its first node.
     holds: HashMap<*const Node, bool>,
-    views: HashMap<*const Surface, Views>,
+    views: HashMap<*const (), Views>,
     visited: usize,
 }
 
@@ -64,7 +64,7 @@ impl Walk {
                 continue;
             };
             match object_of(node).map(|object| &object.shape) {
-                Some(Shape::Surface(_)) => *holds = true,
+                Some(Shape::Surface(_) | Shape::Skin(_)) => *holds = true,
                 Some(Shape::Group(inside)) => match self.holds.get(&inside.as_ptr()) {
                     Some(known) => *holds |= *known,
                     None => stack.push((inside.iter(), inside.as_ptr(), false)),
@@ -89,7 +89,7 @@ impl Walk {
             }
             let Some(object) = object_of(node) else { continue };
             let is_followed = match &object.shape {
-                Shape::Surface(_) => true,
+                Shape::Surface(_) | Shape::Skin(_) => true,
                 Shape::Group(inside) => self.holds.get(&inside.as_ptr()) == Some(&true),
                 _ => false,
             };
@@ -98,15 +98,17 @@ impl Walk {
             }
             let place = placed(node, object, around.as_ref());
             match &object.shape {
-                Shape::Surface(surface) => {
-                    let seen = place.map_or(*camera, |place| camera.through(&place));
-                    let views = self.views.entry(Arc::as_ptr(surface)).or_insert(Views(Vec::new()));
-                    views.0.push(seen);
-                }
+                Shape::Surface(surface) => self.seen(Arc::as_ptr(surface).cast(), place, camera),
+                Shape::Skin(skin) => self.seen(Arc::as_ptr(skin).cast(), place, camera),
                 Shape::Group(inside) => stack.push((inside.iter(), place)),
                 _ => {}
             }
         }
+    }
+
+    fn seen(&mut self, address: *const (), place: Option<Affine>, camera: &Footprint) {
+        let view = place.map_or(*camera, |place| camera.through(&place));
+        self.views.entry(address).or_insert(Views(Vec::new())).0.push(view);
     }
 }
 

@@ -3,6 +3,8 @@
 use super::triangle::{Corners, Sheared, bounds_of, surface_of};
 use super::{LocalRay, Meet, Surface};
 use crate::geometry::mesh::Mesh;
+use crate::geometry::skin::Influences;
+use crate::scene::Armature;
 use crate::world::bvh::Tree;
 use glam::DVec3;
 use std::sync::Arc;
@@ -16,11 +18,57 @@ pub struct MeshShape {
     triangles: Vec<[u32; 3]>,
     /// Over the triangles.
     pub tree: Tree,
+    /// Of a skin, what it was before its bones moved it.
+    pub worn: Option<Box<Worn>>,
+}
+
+/// What a skin was at rest, by vertex: patterns stay with it.
+#[derive(Clone, Debug)]
+pub struct Worn {
+    /// Where each vertex was, in the space of the bones.
+    pub rest: Vec<DVec3>,
+    /// The joints that moved it, and by how much.
+    pub influences: Influences,
+    /// The joints.
+    pub armature: Arc<Armature>,
+}
+
+/// A place of a skin: in a triangle, by the shares of its corners.
+#[derive(Clone, Copy, Debug)]
+pub struct WornPlace<'w> {
+    worn: &'w Worn,
+    corners: [u32; 3],
+    shares: [f64; 3],
+}
+
+impl WornPlace<'_> {
+    /// Where it was before its bones moved it.
+    pub fn rest(&self) -> DVec3 {
+        let corner = |(i, share): (&u32, &f64)| self.worn.rest[*i as usize] * *share;
+        self.corners.iter().zip(&self.shares).map(corner).sum()
+    }
+
+    /// How much a joint moves it; 0 of no joint of its skeleton.
+    pub fn weight(&self, joint: &str) -> f64 {
+        let Some(number) = self.worn.armature.names.iter().position(|name| **name == *joint) else {
+            return 0.0;
+        };
+        let at = |i: &u32| {
+            let (joints, weights) = self.worn.influences.of(*i as usize);
+            joints
+                .iter()
+                .zip(weights)
+                .filter(|(j, _)| usize::from(**j) == number)
+                .map(|(_, w)| w)
+                .sum::<f64>()
+        };
+        self.corners.iter().zip(&self.shares).map(|(i, share)| at(i) * share).sum()
+    }
 }
 
 impl MeshShape {
     /// Builds the tree, or a list.
-    pub fn new(mesh: Arc<Mesh>, with_tree: bool) -> MeshShape {
+    pub fn new(mesh: Arc<Mesh>, worn: Option<Worn>, with_tree: bool) -> MeshShape {
         let count = mesh.triangles.len();
         let tree = if with_tree {
             Tree::build(count, |i| bounds_of(corners(&mesh, mesh.triangles[i])))
@@ -28,7 +76,7 @@ impl MeshShape {
             Tree::list(count, |i| bounds_of(corners(&mesh, mesh.triangles[i])))
         };
         let triangles = tree.order().iter().map(|&i| mesh.triangles[i as usize]).collect();
-        MeshShape { mesh, triangles, tree }
+        MeshShape { mesh, triangles, tree, worn: worn.map(Box::new) }
     }
 
     /// A ray against the triangle at a position of the tree's order.
@@ -60,6 +108,13 @@ impl MeshShape {
     /// The triangle at a position of the tree's order, by its number in the mesh.
     pub fn triangle_at(&self, position: usize) -> u32 {
         self.tree.order()[position]
+    }
+
+    /// The place of a skin where a triangle was met; none on what is no skin.
+    pub fn worn_at(&self, triangle: u32, meet: &Meet) -> Option<WornPlace<'_>> {
+        let worn = self.worn.as_deref()?;
+        let shares = [1.0 - meet.a - meet.b, meet.a, meet.b];
+        Some(WornPlace { worn, corners: self.mesh.triangles[triangle as usize], shares })
     }
 
     /// The surface of a triangle of the mesh, with its tangent where its normal is to be `bent` by a map.

@@ -2,6 +2,7 @@
 
 use super::{LocalRay, Meet, Surface, ahead, padded};
 use crate::geometry::boxes::Line;
+use crate::geometry::mesh::Mesh;
 use crate::geometry::surface::Touch;
 use crate::geometry::surface::lathe::Lathe;
 use crate::geometry::surface::prism::Prism;
@@ -37,6 +38,28 @@ pub enum Form {
 /// What a point may be off by, in u of the largest coordinate: a kernel's own roundings are some sixteen, and a tube's distance from its
 /// centre is a difference of squares.
 const POINT_ROUNDINGS: f64 = 512.0;
+
+impl Form {
+    /// The box around it, without the errors of points.
+    pub fn bounds(&self) -> Aabb {
+        match self {
+            Form::Tube(tube) => tube.bounds(),
+            Form::Lathe(lathe) => lathe.bounds(),
+            Form::Prism(prism) => prism.bounds(),
+            Form::Sweep(sweep) => sweep.bounds(),
+        }
+    }
+
+    /// Triangles within the tolerance, with normals and (u, v).
+    pub fn mesh(&self, tolerance: f64) -> Mesh {
+        match self {
+            Form::Tube(tube) => tube.mesh(tolerance),
+            Form::Lathe(lathe) => lathe.mesh(tolerance),
+            Form::Prism(prism) => prism.mesh(tolerance),
+            Form::Sweep(sweep) => sweep.mesh(tolerance),
+        }
+    }
+}
 
 impl Swept {
     /// Ready for rays.

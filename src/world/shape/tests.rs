@@ -124,7 +124,7 @@ fn cube() -> Mesh {
 #[test]
 fn a_closed_mesh_has_an_inside_through_edges_and_corners() {
     for with_tree in [true, false] {
-        let shape = MeshShape::new(Arc::new(cube()), with_tree);
+        let shape = MeshShape::new(Arc::new(cube()), None, with_tree);
         let mut random = Random(3);
         for case in 0..40_000 {
             let ray = random.ray();

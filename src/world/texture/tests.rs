@@ -19,11 +19,11 @@ fn black_and_white() -> (Texture, Texture) {
     (Texture::number(0.0), Texture::number(1.0))
 }
 
-fn at(p: DVec3) -> TexturePoint {
+fn at(p: DVec3) -> TexturePoint<'static> {
     TexturePoint { local_point: p, ..TexturePoint::default() }
 }
 
-fn at_uv(u: f64, v: f64) -> TexturePoint {
+fn at_uv(u: f64, v: f64) -> TexturePoint<'static> {
     TexturePoint { uv: DVec2::new(u, v), ..TexturePoint::default() }
 }
 

@@ -1,0 +1,255 @@
+//! Skins: cut into triangles at rest, moved by their bones, and then meshes like others. Curved surfaces are cut as finely as the picture and
+//! the motion ask, so that what is seen is the bent surface and not a bent polyhedron.
+
+use super::Lowering;
+use super::surfaces::{form, tolerance};
+use super::views::Views;
+use crate::diag::{Code, Diagnostic, Span};
+use crate::geometry::mesh::Mesh;
+use crate::geometry::patch::{Patch, tessellate};
+use crate::geometry::skin::{Influences, Motion, WeightError, bent_normals, deform, refine};
+use crate::math::{Aabb, Affine};
+use crate::scene::{Material, MeshSource, PatchNet, SampledFunction, Skin, SkinSurface, Surface, Weights};
+use crate::world::shape::Form;
+use crate::world::shape::mesh::Worn;
+use glam::DVec3;
+use std::collections::HashMap;
+use std::sync::Arc;
+
+/// Skins by address; none where one cannot be used, which is said once.
+#[derive(Default)]
+pub(super) struct Skins(HashMap<*const Skin, (Option<u32>, Arc<Skin>)>);
+
+/// What of the tolerance the surface at rest may use up; the rest is for the motion.
+const REST_SHARE: f64 = 0.5;
+/// The first, coarse cut of a curved surface, by its size: only to see where it is taken.
+const COARSE: f64 = 1.0 / 64.0;
+/// How fine a skin is that no camera sees, by its size.
+const UNSEEN: f64 = 1.0 / 4096.0;
+
+/// A curved surface that can be cut.
+enum Curved {
+    Patch(Arc<Patch>),
+    Form(Box<Form>),
+}
+
+impl Curved {
+    fn bounds(&self) -> Aabb {
+        match self {
+            Curved::Patch(patch) => patch.bounds(),
+            Curved::Form(form) => form.bounds(),
+        }
+    }
+
+    fn mesh(&self, tolerance: f64) -> Mesh {
+        match self {
+            Curved::Patch(patch) => tessellate::tessellate(patch, &|_| tolerance),
+            Curved::Form(form) => form.mesh(tolerance),
+        }
+    }
+}
+
+impl Lowering<'_> {
+    /// The aggregate of a skin.
+    pub(super) fn skin(&mut self, skin: &Arc<Skin>, span: Span) -> Option<u32> {
+        if let Some((known, _)) = self.skins.0.get(&Arc::as_ptr(skin)) {
+            return *known;
+        }
+        let made = self.bent(skin, span);
+        let index =
+            made.and_then(|(mesh, worn, materials)| self.keep_worn(mesh, Some(worn), materials, span));
+        self.skins.0.insert(Arc::as_ptr(skin), (index, Arc::clone(skin)));
+        index
+    }
+
+    /// The mesh of a skin in its pose, with what it was at rest.
+    fn bent(&mut self, skin: &Arc<Skin>, span: Span) -> Option<(Mesh, Worn, Vec<Arc<Material>>)> {
+        let (mut mesh, materials) = match &skin.surface {
+            SkinSurface::Mesh(source) => {
+                let (mesh, materials) = self.mesh_at_rest(source)?;
+                (placed(mesh, skin.transform.as_ref()), materials)
+            }
+            SkinSurface::Curved(surface) => {
+                let views = self.surfaces.views_of(skin);
+                let curved = self.curved(surface, span)?;
+                (self.said(skin, curved_at_rest(skin, &curved, views))?, Vec::new())
+            }
+        };
+        let influences = self.said(skin, influences(skin, &mesh.positions))?;
+        self.warn_of_sums(skin, &influences);
+        let rest = mesh.positions.clone();
+        let normals =
+            match skin.weights {
+                Weights::Rigid | Weights::Listed(..) => None,
+                Weights::Smooth(_) | Weights::Function(..) => {
+                    let size = mesh.bounds().size().length();
+                    Some(self.said(
+                        skin,
+                        bent_normals(&rest, &mesh.normals, size, &|points| images(skin, points)),
+                    )?)
+                }
+            };
+        deform(&mut mesh, &influences.rows, &skin.armature.motions, skin.blend);
+        mesh.normals = normals.unwrap_or(mesh.normals);
+        let worn = Worn { rest, influences: influences.rows, armature: Arc::clone(&skin.armature) };
+        Some((mesh, worn, materials))
+    }
+
+    fn mesh_at_rest(&mut self, source: &MeshSource) -> Option<(Mesh, Vec<Arc<Material>>)> {
+        match source {
+            MeshSource::Inline(mesh) => Some((mesh.clone(), Vec::new())),
+            MeshSource::File { path, smooth, span } => {
+                let (mesh, materials) = self.read_mesh(&(path.clone(), *smooth), *span);
+                mesh.map(|mesh| (mesh, materials))
+            }
+        }
+    }
+
+    fn curved(&mut self, surface: &Surface, span: Span) -> Option<Curved> {
+        if let Surface::Patch(source) = surface {
+            return match &source.net {
+                PatchNet::Inline(patch) => Some(Curved::Patch(Arc::new(patch.clone()))),
+                PatchNet::File { path, span } => self.patch_file(path, *span).map(Curved::Patch),
+            };
+        }
+        match form(surface) {
+            Ok(form) => Some(Curved::Form(Box::new(form))),
+            Err(fault) => {
+                let message = format!("this {} cannot be made: {fault}", surface.word());
+                self.sink.push(Diagnostic::new(Code::BadGeometry, span, message));
+                None
+            }
+        }
+    }
+
+    /// Passes a value on, or says why there is none.
+    fn said<T>(&mut self, skin: &Skin, made: Result<T, WeightFault>) -> Option<T> {
+        made.map_err(|fault| self.sink.push(fault.said(skin))).ok()
+    }
+
+    fn warn_of_sums(&mut self, skin: &Skin, rows: &Rows) {
+        let Some((point, sum)) = rows.off else { return };
+        let message =
+            format!("the weights at <{}, {}, {}> add up to {sum}, and not to 1", point.x, point.y, point.z);
+        self.sink.push(
+            Diagnostic::new(Code::WeightsNormalised, place(skin), message)
+                .label("all weights were divided by their sums")
+                .hint("divide by the sum yourself, so that nothing is changed behind your back"),
+        );
+    }
+}
+
+/// Rows of weights, and the first point whose sum was not 1.
+struct Rows {
+    rows: Influences,
+    off: Option<(DVec3, f64)>,
+}
+
+/// Why a skin has no weights somewhere.
+enum WeightFault {
+    /// A row that cannot be used, and where it is.
+    Row(WeightError, DVec3),
+    /// A list of other length than the mesh.
+    Count { rows: usize, vertices: usize },
+    /// The function has no value there.
+    NoValue(Span, String, DVec3),
+}
+
+impl WeightFault {
+    fn said(self, skin: &Skin) -> Diagnostic {
+        match self {
+            WeightFault::Row(error, p) => {
+                let message = format!("the weights at <{}, {}, {}> cannot be used: {error}", p.x, p.y, p.z);
+                let hint = "give each joint a weight of 0 or more, and one of them more than 0";
+                Diagnostic::new(Code::BadWeights, place(skin), message).hint(hint)
+            }
+            WeightFault::Count { rows, vertices } => {
+                let message = format!("`weights` has {rows} rows for the {vertices} vertices of its mesh");
+                Diagnostic::new(Code::BadWeights, place(skin), message).hint("give a row for each vertex")
+            }
+            WeightFault::NoValue(at, why, p) => {
+                let message = format!("the weights at <{}, {}, {}> have no value: {why}", p.x, p.y, p.z);
+                Diagnostic::new(Code::BadWeights, at, message)
+            }
+        }
+    }
+}
+
+/// Where the weights were given.
+fn place(skin: &Skin) -> Option<Span> {
+    match &skin.weights {
+        Weights::Listed(_, span) | Weights::Function(_, span) => Some(*span),
+        Weights::Rigid | Weights::Smooth(_) => None,
+    }
+}
+
+/// A curved surface cut at rest, so finely that bent it is true to the surface.
+fn curved_at_rest(skin: &Skin, curved: &Curved, views: Option<Views>) -> Result<Mesh, WeightFault> {
+    let transform = skin.transform.as_ref();
+    let coarse = placed(curved.mesh(COARSE * curved.bounds().size().length()), transform);
+    let image = Aabb::of(images(skin, &coarse.positions)?);
+    let size = image.size().length();
+    let allowed = match (skin.tolerance, views) {
+        (Some(tolerance), _) => tolerance,
+        (None, Some(views)) => tolerance(&views, image, size),
+        (None, None) => UNSEEN * size,
+    };
+    let growth = skin.armature.motions.iter().map(Motion::growth).fold(1.0, f64::max);
+    let stretch = transform.map_or(1.0, |place| place.stretch().1);
+    let mut mesh = placed(curved.mesh(REST_SHARE * allowed / (growth * stretch)), transform);
+    // What each vertex takes from one bone has no place between two vertices.
+    if !matches!(skin.weights, Weights::Rigid | Weights::Listed(..)) {
+        refine(&mut mesh, (1.0 - REST_SHARE) * allowed, &|points| images(skin, points))?;
+    }
+    Ok(mesh)
+}
+
+/// Where points at rest are taken.
+fn images(skin: &Skin, points: &[DVec3]) -> Result<Vec<DVec3>, WeightFault> {
+    let rows = influences(skin, points)?.rows;
+    let mut moved = Mesh { positions: points.to_vec(), ..Mesh::default() };
+    deform(&mut moved, &rows, &skin.armature.motions, skin.blend);
+    Ok(moved.positions)
+}
+
+/// The weights of points at rest.
+fn influences(skin: &Skin, points: &[DVec3]) -> Result<Rows, WeightFault> {
+    let bones = &skin.armature.bones;
+    let rows = match &skin.weights {
+        Weights::Rigid => Influences::rigid(points, bones),
+        Weights::Smooth(most) => Influences::smooth(points, bones, *most),
+        Weights::Listed(rows, _) if rows.len() == points.len() => (**rows).clone(),
+        Weights::Listed(rows, _) => {
+            return Err(WeightFault::Count { rows: rows.len(), vertices: points.len() });
+        }
+        Weights::Function(function, _) => return by_function(function, points),
+    };
+    Ok(Rows { rows, off: None })
+}
+
+fn by_function(function: &SampledFunction, points: &[DVec3]) -> Result<Rows, WeightFault> {
+    let mut all = Rows { rows: Influences::default(), off: None };
+    let mut row = vec![0.0; function.field.n_outputs()];
+    for p in points {
+        function.field.eval(&p.to_array(), &mut row).map_err(|fault| {
+            WeightFault::NoValue(function.place(fault), fault.kind.text().to_string(), *p)
+        })?;
+        let weights = row.iter().enumerate().map(|(joint, w)| (joint as u16, *w));
+        let sum = all.rows.push(weights).map_err(|error| WeightFault::Row(error, *p))?;
+        if (sum - 1.0).abs() > crate::geometry::skin::weights::SUM_SLACK {
+            all.off.get_or_insert((*p, sum));
+        }
+    }
+    Ok(all)
+}
+
+/// A mesh carried to where it stands among the bones.
+fn placed(mut mesh: Mesh, transform: Option<&Affine>) -> Mesh {
+    let Some(transform) = transform else { return mesh };
+    mesh.positions.iter_mut().for_each(|p| *p = transform.point(*p));
+    mesh.normals.iter_mut().for_each(|n| *n = transform.normal(*n).try_normalize().unwrap_or(*n));
+    if transform.mirrors() {
+        mesh.triangles.iter_mut().for_each(|t| t.swap(1, 2));
+    }
+    mesh
+}
