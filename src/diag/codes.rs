@@ -92,10 +92,12 @@ codes! {
     FileNotFound = "E0501", "a file cannot be read";
     BadMesh = "E0502", "a mesh file cannot be used";
     MeshRepaired = "W0503", "a mesh file was mended on reading";
-    MissingMaterialFile = "W0504", "a mesh's material file or texture is missing";
+    MissingMaterialFile = "W0504", "a material file or texture of a mesh or model is missing";
     BadImage = "E0505", "an image cannot be read";
     BadPatch = "E0507", "a patch file cannot be used";
     BadMotion = "E0508", "a motion capture file cannot be used";
+    BadModel = "E0510", "a model file cannot be used";
+    ModelRepaired = "W0511", "a model file was mended on reading, or is not drawn whole";
     // 6: the scene as a whole
     NoCamera = "E0601", "the scene has no camera";
     NoLight = "W0602", "the scene has no light";

@@ -4,6 +4,7 @@ use super::table::{Arguments, Block, Builtin, Context, Gives, Kind, Outcome, Rep
 use super::value::{Given, Value};
 use crate::diag::{Diagnostic, SourceId, Span};
 use crate::scene::assets::Loader;
+use crate::scene::assets::gltf::{Model, ModelError};
 use crate::scene::{Object, SampleInput, SampledFunction};
 use glam::DVec3;
 use std::path::{Path, PathBuf};
@@ -61,6 +62,10 @@ impl Context for Mock {
 
     fn loader(&self) -> &dyn Loader {
         &EveryFile
+    }
+
+    fn model(&mut self, path: &Path) -> Result<Arc<Model>, ModelError> {
+        Model::read(&EveryFile, path).map(Arc::new)
     }
 
     fn print(&mut self, text: String) {

@@ -32,10 +32,7 @@ fn kinds_of_chapter(chapter: &str) -> Vec<&'static Kind> {
         "materials" => named(&["material"]),
         "curves" => named(&["spline"]),
         "skeletons" => named(&["skeleton", "joint", "tip", "pose"]),
-        "objects" => {
-            kinds::ALL.iter().copied().filter(|k| k.role == Role::Object && k.build.is_some()).collect()
-        }
-        "unbuilt" => kinds::ALL.iter().copied().filter(|k| k.build.is_none()).collect(),
+        "objects" => kinds::ALL.iter().copied().filter(|k| k.role == Role::Object).collect(),
         _ => Vec::new(),
     }
 }
@@ -45,7 +42,7 @@ fn families_of_chapter(chapter: &str) -> impl Iterator<Item = &'static Family> {
     let named: &[&str] = match chapter {
         "curves" => &["curve", "transform"],
         "objects" => &["patch"],
-        "skeletons" => &["pose"],
+        "skeletons" => &["pose", "model"],
         _ => &[],
     };
     FAMILIES.iter().copied().filter(move |family| named.contains(&family.name))
@@ -161,20 +158,14 @@ fn functions_chapters(out: &mut String) {
 /// A chapter with what the tables know put into its places.
 fn prose(name: &str) -> String {
     let text = PROSE.iter().find(|(n, _, _)| *n == name).map_or("", |(_, _, text)| *text);
-    let unbuilt_kinds: Vec<String> =
-        kinds_of_chapter("unbuilt").iter().map(|k| format!("`{}`", k.name)).collect();
     let unbuilt_functions: Vec<String> =
         builtins::all().filter(|b| !b.is_built()).map(|b| format!("`{}`", b.name)).collect();
     text.replace("{common}\n", &property_table(common::of_role(Role::Object)))
-        .replace("{kinds}", &listed(&unbuilt_kinds, "and"))
         .replace("{functions}", &listed(&unbuilt_functions, "and"))
 }
 
 fn kind_page(out: &mut String, kind: &Kind, level: usize) {
     let _ = writeln!(out, "{} `{}`\n\n{}\n", "#".repeat(level), kind.name, kind.doc);
-    if kind.build.is_none() {
-        out.push_str("Not built yet.\n\n");
-    }
     if !kind.own.is_empty() {
         out.push_str(&property_table(kind.own.iter()));
         out.push('\n');

@@ -5,10 +5,11 @@ use super::value::{Given, Value};
 use crate::diag::{Diagnostic, Span};
 use crate::math::field::CallN;
 use crate::scene::assets::Loader;
+use crate::scene::assets::gltf::{Model, ModelError};
 use crate::scene::{Node, Object, SampleInput, SampledFunction};
 use crate::syntax::ast::Name;
 use glam::{DVec2, DVec3};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::rc::Rc;
 use std::sync::Arc;
 
@@ -70,6 +71,8 @@ pub trait Context {
     fn path(&self, written: &str, at: Span) -> PathBuf;
     /// Reads files.
     fn loader(&self) -> &dyn Loader;
+    /// A model file, its description read; the same file is read once.
+    fn model(&mut self, path: &Path) -> Result<Arc<Model>, ModelError>;
     /// What `print` says.
     fn print(&mut self, text: String);
     /// Compiles a function value to run while rendering; reports why it cannot be.
@@ -106,7 +109,7 @@ pub struct Kind {
     pub children: bool,
     /// Whether it takes properties of any name (a pose's are its joints).
     pub open: bool,
-    /// How its value is made; none is "not built yet".
+    /// How its value is made; none for a kind that no block is of.
     pub build: Option<Build>,
 }
 

@@ -5,6 +5,7 @@ pub mod assets;
 pub mod camera;
 pub mod light;
 pub mod material;
+pub mod model;
 pub mod object;
 pub mod rig;
 pub mod settings;
@@ -18,6 +19,7 @@ pub use material::{
     Filter, Fresnel, ImagePattern, Layers, Lobe, Material, Pattern, PatternKind, SampleInput,
     SampledFunction, Texture, Wrap,
 };
+pub use model::{ModelSource, Moment};
 pub use object::{
     Cone, Csg, CsgOp, Disc, Hide, Implicit, MeshSource, Node, Object, Rect, Shape, Torus, Triangle,
 };

@@ -1,6 +1,6 @@
 //! Objects: a shape, where it stands, what it is made of, and where in the text it was written.
 
-use super::{Light, Material, SampledFunction, Skin, Surface};
+use super::{Light, Material, ModelSource, SampledFunction, Skin, Surface};
 use crate::diag::Span;
 use crate::geometry::mesh::Mesh;
 use crate::math::Affine;
@@ -93,6 +93,8 @@ pub enum Shape {
     Surface(Arc<Surface>),
     /// A surface that bends with bones, shared between its placements.
     Skin(Arc<Skin>),
+    /// A model of a file, shared between its placements.
+    Model(Arc<ModelSource>),
     /// Children, shared between placements of the group.
     Group(Arc<[Node]>),
     /// Solids put together, shared between placements.
@@ -122,7 +124,7 @@ impl Shape {
                 &[]
             }
             Shape::Cone(_) | Shape::Torus(_) | Shape::Triangle(_) => &[],
-            Shape::Mesh(_) | Shape::Surface(_) | Shape::Skin(_) | Shape::Implicit(_) => &[],
+            Shape::Mesh(_) | Shape::Surface(_) | Shape::Skin(_) | Shape::Model(_) | Shape::Implicit(_) => &[],
         }
     }
 }

@@ -25,6 +25,11 @@ pub fn solid_fault(node: &Node) -> Option<Diagnostic> {
         Shape::Triangle(_) => Some(flat(object, "triangle", "write a closed `mesh` instead")),
         Shape::Surface(surface) if surface.is_solid() => None,
         Shape::Surface(surface) => Some(open_surface(surface, object.span)),
+        Shape::Model(_) => Some(flat(
+            object,
+            "model",
+            "a closed `mesh` has an inside; the parts of a model are not put together",
+        )),
         Shape::Skin(_) => {
             Some(flat(object, "skin", "put the solids together first, out of parts that do not bend"))
         }

@@ -232,6 +232,7 @@ fn shape_word(shape: &Shape) -> &'static str {
         Shape::Mesh(_) => "mesh",
         Shape::Surface(surface) => surface.word(),
         Shape::Skin(_) => "skin",
+        Shape::Model(_) => "model",
         Shape::Group(_) => "group",
         Shape::Csg(csg) => csg.op.word(),
         Shape::Implicit(_) => "implicit",
@@ -268,6 +269,13 @@ fn shape_properties(shape: &Shape) -> Vec<(&'static str, Json)> {
         Shape::Mesh(mesh) => mesh_properties(mesh),
         Shape::Surface(surface) => surface_properties(surface),
         Shape::Skin(skin) => skin_properties(skin),
+        Shape::Model(model) => {
+            let mut properties = vec![("file", quoted(&model.path.display().to_string()))];
+            let moment =
+                model.moment.iter().flat_map(|m| [("clip", json!(m.clip)), ("at", json!(m.seconds))]);
+            properties.extend(moment);
+            properties
+        }
         Shape::Group(_) => vec![],
         Shape::Implicit(implicit) => {
             let (min, max) = implicit.within;

@@ -43,7 +43,7 @@ pub fn faults(scene: &Scene, for_picture: bool) -> Vec<Diagnostic> {
 struct Survey {
     objects: bool,
     lights: bool,
-    /// Something emits or has an ambient part, or may: the materials of a mesh file are not known here.
+    /// Something emits or has an ambient part, or may: the materials of a mesh file or model are not known here.
     shines: bool,
     seen: HashSet<*const [Node]>,
 }
@@ -78,6 +78,7 @@ impl Survey {
                     self.walk(children);
                 }
             }
+            Shape::Model(_) => (self.objects, self.shines) = (true, true),
             Shape::Skin(skin) => {
                 self.objects = true;
                 if let SkinSurface::Mesh(mesh) = &skin.surface {

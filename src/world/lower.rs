@@ -3,6 +3,7 @@
 
 mod lights;
 mod meshes;
+mod models;
 mod shapes;
 mod skins;
 mod solids;
@@ -19,6 +20,7 @@ use crate::math::Affine;
 use crate::scene::assets::AssetCache;
 use crate::scene::{Accelerator, Hide, Light, LightSource, Material, Node, Object, Rgb, Shape, Texture};
 use meshes::Meshes;
+use models::Models;
 use skins::Skins;
 use solids::Solids;
 use std::collections::HashMap;
@@ -77,6 +79,7 @@ fn lowered(
         meshes: Meshes::default(),
         solids: Solids::default(),
         skins: Skins::default(),
+        models: Models::default(),
         surfaces: Surfaces::of(&nodes, options.footprint.as_ref()),
     };
     let world_group = lowering.group(Source::Owned(nodes.into_iter()), 0);
@@ -100,6 +103,7 @@ struct Lowering<'a> {
     meshes: Meshes,
     solids: Solids,
     skins: Skins,
+    models: Models,
     surfaces: Surfaces,
 }
 
@@ -247,6 +251,11 @@ impl Lowering<'_> {
             }
             Shape::Skin(skin) => {
                 let aggregate = self.skin(&skin, span)?;
+                self.instance(group, aggregate, transform, facts);
+                None
+            }
+            Shape::Model(source) => {
+                let aggregate = self.model(&source, span, depth)?;
                 self.instance(group, aggregate, transform, facts);
                 None
             }

@@ -38,6 +38,8 @@ fn run(code: Code, example: &Example, all: &[Example]) -> Run {
             | Code::UnknownCamera
             | Code::UndefinedSample
             | Code::BadPatch
+            | Code::BadModel
+            | Code::ModelRepaired
             | Code::NonFiniteSample
             | Code::BadMesh
             | Code::MeshRepaired

@@ -447,8 +447,7 @@ fn words_win_where_only_words_are_taken_and_names_elsewhere() {
 
 #[test]
 fn what_is_not_built_yet_is_a_warning_and_the_rest_is_made() {
-    let text = "model { file \"man.glb\" }\nspline limb { natural x, y, z }\nskeleton arm { joint a { hinge z } }\n\
-         skin { surface tube { along limb }  skeleton arm }\nsphere {}";
+    let text = "camera { eye z*5  look_at <0, 0, 0> } light { sky 1 } render { tracer photon }\nsphere {}";
     let evaluated = evaluate(text);
     assert!(evaluated.diagnostics.iter().all(|d| d.severity == Severity::Warning), "{}", told(&evaluated));
     assert!(!evaluated.diagnostics.is_empty());

@@ -11,6 +11,7 @@ mod intersection;
 mod language;
 mod layers;
 mod meshes;
+mod models;
 mod pictures;
 mod planted;
 mod radiometry;

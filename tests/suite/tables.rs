@@ -8,12 +8,12 @@ use ogee::session::{Options, Session};
 use std::path::Path;
 use std::sync::Arc;
 
-/// Every file is there and empty: examples name files of their reader's.
+/// Every file is there and empty, but for models: examples name files of their reader's.
 struct EveryFile;
 
 impl Loader for EveryFile {
-    fn read(&self, _: &Path) -> std::io::Result<Vec<u8>> {
-        Ok(Vec::new())
+    fn read(&self, path: &Path) -> std::io::Result<Vec<u8>> {
+        Ok(model(path).unwrap_or_default())
     }
 
     fn exists(&self, _: &Path) -> bool {
@@ -71,12 +71,18 @@ fn every_example_of_a_function_gives_what_it_says() {
     }
 }
 
-/// One scene, under any name.
+/// The example's model, where a path is one of a model.
+fn model(path: &Path) -> Option<Vec<u8>> {
+    let is_model = path.extension().is_some_and(|e| e == "gltf");
+    is_model.then(|| include_bytes!("../../examples/models/reed.gltf").to_vec())
+}
+
+/// One scene, under any name but that of a model.
 struct OneScene(&'static str);
 
 impl Loader for OneScene {
-    fn read(&self, _: &Path) -> std::io::Result<Vec<u8>> {
-        Ok(self.0.as_bytes().to_vec())
+    fn read(&self, path: &Path) -> std::io::Result<Vec<u8>> {
+        Ok(model(path).unwrap_or_else(|| self.0.as_bytes().to_vec()))
     }
 
     fn exists(&self, _: &Path) -> bool {

@@ -7,8 +7,9 @@ use crate::lang::members;
 use crate::lang::table::{Context, Gives, Outcome, Trace};
 use crate::lang::value::Value;
 use crate::scene::assets::Loader;
+use crate::scene::assets::gltf::{Model, ModelError};
 use crate::scene::{SampleInput, SampledFunction};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 impl Context for Evaluator<'_> {
@@ -40,6 +41,15 @@ impl Context for Evaluator<'_> {
 
     fn loader(&self) -> &dyn Loader {
         self.run.loader
+    }
+
+    fn model(&mut self, path: &Path) -> Result<Arc<Model>, ModelError> {
+        if let Some(known) = self.models.get(path) {
+            return known.clone();
+        }
+        let read = Model::read(self.run.loader, path).map(Arc::new);
+        self.models.insert(path.to_owned(), read.clone());
+        read
     }
 
     fn print(&mut self, text: String) {

@@ -30,12 +30,15 @@ use super::table::{Outcome, Reported, Trace};
 use super::value::{Given, Value};
 use crate::diag::{Sink, SourceId, Span};
 use crate::scene::assets::Loader;
+use crate::scene::assets::gltf::{Model, ModelError};
 use crate::scene::{Camera, Figure, Node, RenderSettings, Scene};
 use guards::Guards;
 use nested::Nested;
 use slots::{Captured, Slot};
 use std::collections::HashMap;
+use std::path::PathBuf;
 use std::rc::Rc;
+use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 use undo::Undo;
 
@@ -203,6 +206,8 @@ struct Evaluator<'p> {
     guards: Guards,
     sink: &'p mut Sink,
     said: Vec<Said>,
+    /// Models whose files were asked for what stands in them.
+    models: HashMap<PathBuf, Result<Arc<Model>, ModelError>>,
 }
 
 impl<'p> Evaluator<'p> {
@@ -224,6 +229,7 @@ impl<'p> Evaluator<'p> {
             guards: Guards::new(&run.limits, run.stack),
             sink,
             said: Vec::new(),
+            models: HashMap::new(),
         }
     }
 

@@ -228,6 +228,7 @@ fn emitter(ctx: &mut dyn Context, block: &Block) -> Outcome<Arc<Object>> {
         | Shape::Torus(_)
         | Shape::Surface(_)
         | Shape::Skin(_)
+        | Shape::Model(_)
         | Shape::Group(_)
         | Shape::Csg(_)
         | Shape::Implicit(_) => {

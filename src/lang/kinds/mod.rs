@@ -7,6 +7,7 @@ pub mod common;
 mod energy;
 mod lights;
 mod materials;
+pub mod models;
 mod objects;
 mod read;
 mod rigs;
@@ -18,18 +19,13 @@ pub mod splines;
 mod surfaces;
 #[cfg(test)]
 mod tests;
-mod unbuilt;
 pub mod with;
 
 pub use objects::existing_file;
 pub use rigs::{Part, unknown_tip};
 
 use super::check;
-use super::table::{Block, Context, Kind, Outcome, Reported, Role};
-use super::value::Value;
-use crate::diag::{Code, Diagnostic, Span};
-use crate::scene::{Object, Shape};
-use std::sync::Arc;
+use super::table::{Block, Context, Kind, Outcome};
 
 /// Every kind, in the order of the reference.
 pub static ALL: &[&Kind] = &[
@@ -58,7 +54,7 @@ pub static ALL: &[&Kind] = &[
     &solids::INTERSECTION,
     &solids::DIFFERENCE,
     &skins::SKIN,
-    &unbuilt::MODEL,
+    &models::MODEL,
     &rigs::SKELETON,
     &rigs::JOINT,
     &rigs::TIP,
@@ -81,35 +77,9 @@ pub fn group() -> &'static Kind {
     &objects::GROUP
 }
 
-/// Checks a block against the table and makes its value. An object of a kind that is not built yet is an empty group;
-/// any other such value is a warning and then silence.
+/// Checks a block against the table and makes its value.
 pub fn make(ctx: &mut dyn Context, mut block: Block) -> Outcome {
-    let unbuilt = block.kind.build.is_none();
-    if unbuilt {
-        ctx.report(not_built(block.kind, block.kind_span));
-    }
-    let poisoned = !block.poisoned.is_empty();
-    let checked = check::check_block(ctx, &mut block);
-    match block.kind.build {
-        Some(build) => {
-            checked?;
-            build(ctx, block)
-        }
-        None if block.kind.role == Role::Object && (checked.is_ok() || poisoned) => {
-            Ok(empty_group(block.span))
-        }
-        None => Err(Reported),
-    }
-}
-
-fn empty_group(span: Span) -> Value {
-    Value::Object(Arc::new(Object::new(Shape::Group(Arc::new([])), span)))
-}
-
-fn not_built(kind: &Kind, span: Span) -> Diagnostic {
-    let said = Diagnostic::new(Code::NotBuilt, span, format!("`{}` is not built yet", kind.name));
-    match kind.role {
-        Role::Object => said.label("left out of the picture"),
-        _ => said.label("what uses it is left out"),
-    }
+    check::check_block(ctx, &mut block)?;
+    let build = block.kind.build.expect("every kind of the table is built");
+    build(ctx, block)
 }

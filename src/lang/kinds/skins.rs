@@ -1,6 +1,6 @@
 //! The kind `skin`: a surface that bends with a skeleton. Faults that need no vertices are said here; the kernels and the world do the rest.
 
-mod bones;
+pub(super) mod bones;
 mod weights;
 
 use super::shapes::finish;

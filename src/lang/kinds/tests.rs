@@ -207,24 +207,6 @@ mod building {
         assert!(ctx.said.is_empty(), "{:?}", ctx.said);
     }
 
-    #[test]
-    fn what_is_not_built_is_an_empty_group() {
-        let mut ctx = Mock::default();
-        let model = object(make(&mut ctx, block("model", &[("file", &[Value::text("man.glb")])])));
-        assert!(matches!(&model.shape, Shape::Group(nodes) if nodes.is_empty()));
-        assert_eq!(ctx.codes(), ["W0308"]);
-        assert_eq!(codes_of_unbuilt(), ["W0308", "E0301"]);
-    }
-
-    fn codes_of_unbuilt() -> Vec<&'static str> {
-        let mut ctx = Mock::default();
-        assert!(
-            make(&mut ctx, block("model", &[("file", &[Value::text("man.glb")]), ("clop", &[n(1.0)])]))
-                .is_err()
-        );
-        ctx.codes()
-    }
-
     fn material(properties: &[(&str, &[Value])]) -> (Arc<crate::scene::Material>, Mock) {
         let mut ctx = Mock::default();
         match make(&mut ctx, block("material", properties)) {

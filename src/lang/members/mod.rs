@@ -5,6 +5,7 @@
 
 mod ask;
 pub mod curves;
+mod models;
 mod patches;
 pub mod rigs;
 #[cfg(test)]
@@ -93,7 +94,8 @@ pub struct Sampled {
 }
 
 /// Every family.
-pub static FAMILIES: &[&Family] = &[&curves::FAMILY, &patches::FAMILY, &rigs::FAMILY, &transforms::FAMILY];
+pub static FAMILIES: &[&Family] =
+    &[&curves::FAMILY, &patches::FAMILY, &models::FAMILY, &rigs::FAMILY, &transforms::FAMILY];
 
 impl Member {
     /// A field.

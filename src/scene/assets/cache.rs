@@ -1,6 +1,7 @@
 //! Files read and decoded once, whoever asks and from however many threads.
 
 use super::Loader;
+use super::gltf::{Model, ModelError};
 use super::image::{Image, ImageError};
 use super::obj::{LoadedMesh, load_obj};
 use crate::diag::{Diagnostic, Span};
@@ -35,17 +36,18 @@ impl AssetError {
 type Slot<T, E> = Arc<OnceLock<Result<Arc<T>, E>>>;
 type Slots<K, T, E> = Mutex<HashMap<K, Slot<T, E>>>;
 
-/// The pictures and meshes of a run by their path. What is asked for twice is read once; who comes second waits for the first.
+/// The pictures, meshes and models of a run by their path. What is asked for twice is read once; who comes second waits for the first.
 pub struct AssetCache<'a> {
     loader: &'a dyn Loader,
     images: Slots<PathBuf, Image, AssetError>,
     meshes: Slots<(PathBuf, Option<bool>), LoadedMesh, Box<Diagnostic>>,
+    models: Slots<PathBuf, Model, ModelError>,
 }
 
 impl<'a> AssetCache<'a> {
     /// An empty cache over a loader.
     pub fn new(loader: &'a dyn Loader) -> Self {
-        AssetCache { loader, images: Mutex::default(), meshes: Mutex::default() }
+        AssetCache { loader, images: Mutex::default(), meshes: Mutex::default(), models: Mutex::default() }
     }
 
     /// The way files are read.
@@ -62,6 +64,12 @@ impl<'a> AssetCache<'a> {
     pub fn image(&self, path: &Path) -> Result<Arc<Image>, AssetError> {
         let slot = slot(&self.images, path.to_owned());
         slot.get_or_init(|| Ok(Arc::new(Image::decode(&self.read(path)?, path)?))).clone()
+    }
+
+    /// A model.
+    pub fn model(&self, path: &Path) -> Result<Arc<Model>, ModelError> {
+        let slot = slot(&self.models, path.to_owned());
+        slot.get_or_init(|| Model::read(self.loader, path).map(Arc::new)).clone()
     }
 
     /// A mesh by [`load_obj`]. Diagnostics, and the materials of its file, have the place of whoever asked first.

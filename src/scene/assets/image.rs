@@ -90,6 +90,29 @@ impl Image {
         Image { width, height, channels: 3, texels: Texels::Linear(rgb) }
     }
 
+    /// Another of the same size, texel by texel: a grey of one number, a colour of three. Numbers are light, or as they are.
+    pub fn map<const N: usize>(&self, reading: Reading, change: impl Fn([f64; 4]) -> [f64; N]) -> Image {
+        const { assert!(N >= 1 && N <= 4, "one to four channels") };
+        let places = (0..self.height).flat_map(|y| (0..self.width).map(move |x| (x, y)));
+        let texels = places.flat_map(|(x, y)| change(self.texel(x, y, reading)).map(|c| c as f32));
+        let (width, height) = (self.width, self.height);
+        Image { width, height, channels: N, texels: Texels::Linear(texels.collect()) }
+    }
+
+    /// A picture of linear RGB from a function of the places of its texels: 0 … 1 from the left and from the top.
+    pub fn from_texels(width: u32, height: u32, colour: impl Fn(f64, f64) -> [f64; 3]) -> Image {
+        let place = |i: u32, n: u32| (f64::from(i) + 0.5) / f64::from(n);
+        let places = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
+        let texels = places.flat_map(|(x, y)| colour(place(x, width), place(y, height)).map(|c| c as f32));
+        Image::from_linear(width, height, texels.collect())
+    }
+
+    /// The texel at a place: 0 … 1 from the left and from the top.
+    pub fn nearest(&self, x: f64, y: f64, reading: Reading) -> [f64; 4] {
+        let index = |x: f64, n: u32| ((x * f64::from(n)) as u32).min(n - 1);
+        self.texel(index(x, self.width), index(y, self.height), reading)
+    }
+
     fn from_decoded(decoded: DynamicImage, format: ImageFormat) -> Image {
         let (width, height) = (decoded.width(), decoded.height());
         let channels = decoded.color().channel_count() as usize;

@@ -4,10 +4,10 @@
 //! Channels may stand in any order; the first is the outermost. An offset may lack, an `End Site` becomes a tip named after its joint.
 //! Nothing of a file is trusted: counts are compared with what is there before anything is allocated by them.
 
+use super::names::Names;
 use crate::geometry::skeleton::{Freedom, Limits, Skeleton, Turning};
 use crate::scene::rig::Motion;
 use glam::DVec3;
-use std::collections::HashSet;
 
 /// Why a file cannot be used, with the line where that shows.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -33,9 +33,8 @@ pub fn parse(text: &str, reserved: impl Fn(&str) -> bool) -> Result<(Skeleton, M
     let mut reader = Reader {
         words: Words::new(text),
         skeleton: Skeleton::default(),
-        names: HashSet::new(),
+        names: Names::new(&reserved),
         columns: Vec::new(),
-        reserved: &reserved,
     };
     reader.words.expect("HIERARCHY")?;
     reader.hierarchy()?;
@@ -126,10 +125,9 @@ fn shown(word: &str) -> String {
 struct Reader<'t, 'r> {
     words: Words<'t>,
     skeleton: Skeleton,
-    names: HashSet<String>,
+    names: Names<'r>,
     /// For each number of a frame's line, the coordinate it is.
     columns: Vec<usize>,
-    reserved: &'r dyn Fn(&str) -> bool,
 }
 
 impl Reader<'_, '_> {
@@ -198,24 +196,7 @@ impl Reader<'_, '_> {
         if parts.is_empty() {
             return self.words.fault("a joint's name is expected");
         }
-        Ok(self.fit(&parts.join("_")))
-    }
-
-    /// A name that the language can write and that is not there yet.
-    fn fit(&mut self, written: &str) -> String {
-        let fit = |c: char| if c.is_alphanumeric() || c == '_' { c } else { '_' };
-        let mut name: String = written.chars().map(fit).collect();
-        if name.starts_with(|c: char| c.is_numeric()) {
-            name.insert(0, '_');
-        }
-        if (self.reserved)(&name) {
-            name.push('_');
-        }
-        let numbered = (2..).map(|n| format!("{name}_{n}"));
-        let free = std::iter::once(name.clone()).chain(numbered).find(|name| !self.names.contains(name));
-        let name = free.expect("there is always a next number");
-        self.names.insert(name.clone());
-        name
+        Ok(self.names.fit(&parts.join("_")))
     }
 
     fn offset(&mut self) -> Result<DVec3, MocapError> {
@@ -254,7 +235,7 @@ impl Reader<'_, '_> {
         self.words.next("`End Site`")?;
         self.words.expect("Site")?;
         let name = format!("{}_end", self.skeleton.joints()[joint].name);
-        let name = self.fit(&name);
+        let name = self.names.fit(&name);
         self.words.expect("{")?;
         let offset = self.offset()?;
         self.words.expect("}")?;

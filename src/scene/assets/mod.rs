@@ -3,9 +3,11 @@
 pub mod bpt;
 mod cache;
 mod decode;
+pub mod gltf;
 pub mod image;
 pub mod mocap;
 mod mtl;
+mod names;
 pub mod obj;
 
 pub use cache::{AssetCache, AssetError};

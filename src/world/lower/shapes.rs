@@ -50,6 +50,7 @@ pub(super) fn convert(shape: scene::Shape) -> Result<Shape, String> {
         scene::Shape::Mesh(_)
         | scene::Shape::Surface(_)
         | scene::Shape::Skin(_)
+        | scene::Shape::Model(_)
         | scene::Shape::Group(_)
         | scene::Shape::Csg(_)
         | scene::Shape::Implicit(_) => Err("not a simple shape".into()),

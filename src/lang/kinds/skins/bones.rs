@@ -10,7 +10,7 @@ const THICK: f64 = 0.08;
 const THIN: f64 = 0.025;
 
 /// The bones of a skeleton in its pose.
-pub(super) fn drawn(stance: &Stance, span: Span) -> Shape {
+pub fn drawn(stance: &Stance, span: Span) -> Shape {
     let bones = stance.placement().bones(&stance.rig().skeleton);
     let lengths: Vec<f64> = bones.iter().map(|bone| bone.start.distance(bone.end)).collect();
     let mean =

@@ -2,7 +2,7 @@
 
 use crate::geometry::any_curve::AnyCurve;
 use crate::geometry::surface::tube::Caps;
-use crate::lang::kinds::{lights, objects, settings, shapes, skins, solids, surfaces};
+use crate::lang::kinds::{lights, models, objects, settings, shapes, skins, solids, surfaces};
 use crate::lang::table::Kind;
 use crate::lang::value::{self, Given, Value};
 use crate::scene::{
@@ -43,6 +43,7 @@ pub fn kind_of(shape: &Shape, asked: impl Fn(&str) -> bool) -> &'static Kind {
             Surface::Extrude(_) => &surfaces::EXTRUDE,
         },
         Shape::Skin(_) => &skins::SKIN,
+        Shape::Model(_) => &models::MODEL,
         Shape::Group(_) => &objects::GROUP,
         Shape::Csg(csg) => solids::kind_of(csg.op),
         Shape::Implicit(_) => &solids::IMPLICIT,
@@ -98,7 +99,9 @@ pub fn shape(shape: &Shape, new: &[Given]) -> Option<Vec<Part>> {
             MeshSource::File { .. } | MeshSource::Inline(_) => return None,
         },
         Shape::Surface(surface) => return of_surface(surface),
-        Shape::Skin(_) | Shape::Group(_) | Shape::Csg(_) | Shape::Implicit(_) => return None,
+        Shape::Skin(_) | Shape::Model(_) | Shape::Group(_) | Shape::Csg(_) | Shape::Implicit(_) => {
+            return None;
+        }
     })
 }
 
