@@ -157,9 +157,10 @@ fn write_exr(film: &Film, about: &Metadata, bytes: &mut Cursor<Vec<u8>>) -> Resu
 
 /// All pixels as 8-bit sRGB, row by row.
 pub fn develop_film(film: &Film, develop: &Development) -> Vec<u8> {
-    let mut bytes = Vec::with_capacity(film.pixels.len() * 3);
-    for pixel in &film.pixels {
-        bytes.extend_from_slice(&develop.pixel(*pixel));
+    let table = srgb_table();
+    let mut bytes = vec![0; film.pixels.len() * 3];
+    for (encoded, pixel) in bytes.chunks_exact_mut(3).zip(&film.pixels) {
+        encoded.copy_from_slice(&develop.pixel_by(table, *pixel));
     }
     bytes
 }
@@ -167,9 +168,14 @@ pub fn develop_film(film: &Film, develop: &Development) -> Vec<u8> {
 impl Development {
     /// Linear radiance to 8-bit sRGB.
     pub fn pixel(&self, radiance: Rgb) -> [u8; 3] {
+        self.pixel_by(srgb_table(), radiance)
+    }
+
+    #[inline]
+    fn pixel_by(&self, table: &SrgbTable, radiance: Rgb) -> [u8; 3] {
         let exposed = if self.exposure == 0.0 { radiance } else { radiance * exp2(self.exposure) };
         let c = tone(self.tonemap, exposed);
-        [to_srgb8(c.x), to_srgb8(c.y), to_srgb8(c.z)]
+        [table.encode(c.x), table.encode(c.y), table.encode(c.z)]
     }
 }
 
@@ -183,11 +189,7 @@ fn tone(map: ToneMap, c: Rgb) -> Rgb {
 
 /// A linear number in 0 … 1 as 8-bit sRGB (IEC 61966-2-1), clipped, rounded to the nearest. NaN is 0.
 pub fn to_srgb8(linear: f64) -> u8 {
-    // A table answers without a power for each channel of each pixel: the number that the lower end of a cell stands for, or the next.
-    let table = srgb_table();
-    let cell = (linear.clamp(0.0, 1.0) * CELLS as f64) as usize;
-    let encoded = table.first[cell];
-    encoded + u8::from(table.steps[usize::from(encoded)] <= linear)
+    srgb_table().encode(linear)
 }
 
 /// Into how many equal parts 0 … 1 is cut: more than steps are anywhere (sRGB begins with 12.92 · 255 = 3295 a unit), so that no cell has
@@ -199,6 +201,16 @@ struct SrgbTable {
     steps: [f64; 256],
     /// What the lower end of each cell, and 1, rounds to.
     first: [u8; CELLS + 1],
+}
+
+impl SrgbTable {
+    /// Without a power for each channel of each pixel: the number that the lower end of the cell rounds to, or the next.
+    #[inline]
+    fn encode(&self, linear: f64) -> u8 {
+        let cell = (linear.clamp(0.0, 1.0) * CELLS as f64) as usize;
+        let encoded = self.first[cell.min(CELLS)];
+        encoded + u8::from(self.steps[usize::from(encoded)] <= linear)
+    }
 }
 
 fn srgb_table() -> &'static SrgbTable {

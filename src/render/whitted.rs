@@ -138,9 +138,11 @@ impl Whitted {
         let Some(hit) = world.closest(&task.ray) else {
             return Ok(task.weight * task.inside.kept(f64::INFINITY) * self.beyond(&task.ray));
         };
-        let bsdf = Bsdf::at(world, &hit, &task.ray)?;
+        // Looked at where it stands: a copy of so much just written waits for the writes.
+        let found = Bsdf::at(world, &hit, &task.ray);
+        let bsdf = found.as_ref().map_err(|fault| *fault)?;
         let mut weight = task.weight;
-        if let Some(absorb) = task.inside.absorbing(&bsdf) {
+        if let Some(absorb) = task.inside.absorbing(bsdf) {
             weight *= kept(absorb, hit.t);
         }
         if bsdf.opacity < 1.0 {
@@ -152,13 +154,13 @@ impl Whitted {
             tasks.push(past);
             weight *= bsdf.opacity;
         }
-        let mut radiance = bsdf.ambient + emitted(world, &hit, &bsdf);
+        let mut radiance = bsdf.ambient + emitted(world, &hit, bsdf);
         let last = self.second_rays && task.segment >= self.depth;
         if !last {
-            radiance += self.local(world, &hit, &bsdf, task.segment == 1, sampler)?;
+            radiance += self.local(world, &hit, bsdf, task.segment == 1, sampler)?;
         }
         if self.second_rays && !last && bsdf.goes_on() {
-            self.branch(&hit, &bsdf, &Task { weight, ..*task }, tasks, sampler);
+            self.branch(&hit, bsdf, &Task { weight, ..*task }, tasks, sampler);
         }
         Ok(weight * radiance)
     }
