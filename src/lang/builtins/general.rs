@@ -47,13 +47,6 @@ pub static ALL: &[Builtin] = &[
          where it is smooth; kinks and jumps are found.",
         ("curve(t => <t, t^2, 0>, 0, 2).domain", "[0, 2]"),
     ),
-    Builtin::new(
-        "weights_of",
-        &[Parameter::new("joint", "a joint's name, in quotation marks")],
-        NotBuilt,
-        "A pattern that colours a skin by a joint's influence.",
-        ("weights_of(\"elbow\")", ""),
-    ),
 ];
 
 fn misfit(ctx: &mut dyn Context, arguments: &Arguments<'_>, name: &str, i: usize) -> Reported {
