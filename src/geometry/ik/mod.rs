@@ -1,8 +1,8 @@
 //! Inverse kinematics: coordinates of a skeleton for which tips are at given points, or as near as its joints and their limits allow.
 //! Knows nothing of scenes.
 //!
-//! Least Σ w·|tip − point|² over the box of the limits. [`problem`] is that sum with its first and second derivatives, the methods are
-//! [`levenberg`] (the default), [`pseudo_inverse`], [`transpose`] and [`ccd`], and [`descent`] is what they share: no coordinate moves by
+//! Least Σ w·|tip − point|² over the box of the limits. `problem` is that sum with its first and second derivatives, the methods are
+//! `levenberg` (the default), `pseudo_inverse`, `transpose` and `ccd`, and `descent` is what they share: no coordinate moves by
 //! more than a radian in a step, the sum never grows, limits hold to the last bit, and a place where all of them stand still though it
 //! is no minimum (an arm stretched along the line to its target) is left along the direction of most negative curvature. Where a limit
 //! stands in the way, other starts are tried and the best end is kept.

@@ -139,7 +139,7 @@ impl Model {
         self.tree.places(&locals)
     }
 
-    /// The skeleton of its nodes at these places. Names are made fit for the language; see [`Names`].
+    /// The skeleton of its nodes at these places. Names are made fit for the language; see `Names`.
     pub fn skeleton(&self, places: &[Place], reserved: &dyn Fn(&str) -> bool) -> Skeleton {
         let mut turns = vec![self.root.skins.is_empty(); self.tree.nodes.len()];
         for joint in self.root.skins.iter().flat_map(|skin| &skin.joints) {
