@@ -2,6 +2,7 @@
 //! to within a part's length where a ray comes to it. Knows nothing of what the parts are.
 
 use super::boxes::Line;
+use super::nearest_first::{self, Branch};
 use crate::math::Aabb;
 use crate::math::error::gamma;
 use glam::DVec3;
@@ -58,9 +59,6 @@ struct Node {
     part: u32,
 }
 
-/// Most nodes that wait at a time: parts are halved in number at each level, of which there are less than 2³².
-const STACK: usize = 40;
-
 impl BallTree {
     /// Over `n` parts; `ball` is around a range of them.
     pub fn build(n: usize, ball: impl Fn(Range<usize>) -> Ball) -> BallTree {
@@ -89,40 +87,16 @@ impl BallTree {
 
     /// Visits the parts whose balls the line meets between `near` and `far`, near ones first. `visit` is given the far end and returns the new
     /// one.
-    pub fn walk(&self, line: &Line, near: f64, mut far: f64, mut visit: impl FnMut(usize, f64) -> f64) {
-        let mut stack = [(0u32, 0.0f64); STACK];
-        let mut height = 0;
+    pub fn walk(&self, line: &Line, near: f64, far: f64, visit: impl FnMut(usize, f64) -> f64) {
+        if self.nodes.is_empty() {
+            return;
+        }
         let entry = |index: u32, far: f64| self.nodes[index as usize].ball.entry(line, near, far);
-        if !self.nodes.is_empty()
-            && let Some(t) = entry(0, far)
-        {
-            stack[0] = (0, t);
-            height = 1;
-        }
-        while height > 0 {
-            height -= 1;
-            let (index, t) = stack[height];
-            if t > far {
-                continue;
-            }
-            let node = &self.nodes[index as usize];
-            if node.second == 0 {
-                far = visit(node.part as usize, far);
-                continue;
-            }
-            let (a, b) = (index + 1, node.second);
-            let (ta, tb) = (entry(a, far), entry(b, far));
-            let nearer_first = match (ta, tb) {
-                (Some(x), Some(y)) if x > y => [(a, ta), (b, tb)],
-                _ => [(b, tb), (a, ta)],
-            };
-            for (index, t) in nearer_first {
-                if let Some(t) = t {
-                    stack[height] = (index, t);
-                    height += 1;
-                }
-            }
-        }
+        let branch = |index: u32| match &self.nodes[index as usize] {
+            Node { second: 0, part, .. } => Branch::Leaf(*part as usize),
+            Node { second, .. } => Branch::Fork(index + 1, *second),
+        };
+        nearest_first::walk(far, entry, branch, visit);
     }
 }
 

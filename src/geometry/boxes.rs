@@ -2,6 +2,7 @@
 //! the parts are; the trees over whole scenes are the world's.
 
 use super::curve::any_across;
+use super::nearest_first::{self, Branch};
 use crate::math::error::gamma;
 use crate::math::{Aabb, Point};
 use glam::DVec3;
@@ -74,9 +75,6 @@ struct Node {
     count: u32,
 }
 
-/// Most nodes that wait at a time: one for each level, and parts are halved in number at each, of which there are less than 2³².
-const STACK: usize = 40;
-
 impl BoxTree {
     /// Lays out the tree, with at most `leaf` parts in a leaf, and puts the parts in its order.
     pub fn build<T>(parts: &mut [T], leaf: usize, bounds: impl Fn(&T) -> Aabb) -> BoxTree {
@@ -127,52 +125,16 @@ impl BoxTree {
 
     /// Visits ranges of parts whose boxes the line meets between `near` and `far`, near ones first. `visit` is given the far end and returns
     /// the new one.
-    pub fn walk(
-        &self,
-        line: &Line,
-        near: f64,
-        mut far: f64,
-        mut visit: impl FnMut(Range<usize>, f64) -> f64,
-    ) {
-        let mut stack = [(0u32, 0.0f64); STACK];
-        let mut height = 0;
+    pub fn walk(&self, line: &Line, near: f64, far: f64, visit: impl FnMut(Range<usize>, f64) -> f64) {
+        if self.nodes.is_empty() {
+            return;
+        }
         let entry = |index: u32, far: f64| line.entry(&self.nodes[index as usize].bounds, near, far);
-        if !self.nodes.is_empty()
-            && let Some(t) = entry(0, far)
-        {
-            stack[0] = (0, t);
-            height = 1;
-        }
-        while height > 0 {
-            height -= 1;
-            let (index, t) = stack[height];
-            if t > far {
-                continue;
-            }
-            let node = &self.nodes[index as usize];
-            if node.count > 0 {
-                let first = node.index as usize;
-                far = visit(first..first + node.count as usize, far);
-                continue;
-            }
-            let (a, b) = (index + 1, node.index);
-            let mut push = |index: u32, t: Option<f64>| {
-                if let Some(t) = t {
-                    stack[height] = (index, t);
-                    height += 1;
-                }
-            };
-            match (entry(a, far), entry(b, far)) {
-                (Some(ta), Some(tb)) if ta > tb => {
-                    push(a, Some(ta));
-                    push(b, Some(tb));
-                }
-                (ta, tb) => {
-                    push(b, tb);
-                    push(a, ta);
-                }
-            }
-        }
+        let branch = |index: u32| match &self.nodes[index as usize] {
+            Node { index: second, count: 0, .. } => Branch::Fork(index + 1, *second),
+            Node { index: first, count, .. } => Branch::Leaf(*first as usize..(*first + *count) as usize),
+        };
+        nearest_first::walk(far, entry, branch, visit);
     }
 }
 

@@ -13,6 +13,7 @@ pub mod function;
 pub mod ik;
 pub mod measured;
 pub mod mesh;
+mod nearest_first;
 pub mod patch;
 pub mod path;
 pub mod skeleton;
