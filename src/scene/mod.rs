@@ -25,7 +25,7 @@ pub use object::{
 };
 pub use rig::{Figure, Motion, Pose, Reach, Rig, Stance};
 pub use settings::{Accelerator, RenderSettings, ToneMap, TracerKind};
-pub use skin::{Armature, Skin, SkinSurface, Weights};
+pub use skin::{Armature, Skin, SkinSurface, Weights, divided_weights, unusable_weights};
 pub use solid::{open_mesh, solid_fault};
 pub use surface::{
     Along, ExtrudeSource, LatheSource, PatchMethod, PatchNet, PatchSource, Radius, Surface, TubeSource,

@@ -1,7 +1,7 @@
 //! Skins: a surface at rest, the bones that move it, and how. Nothing is cut into triangles or moved here.
 
 use super::{MeshSource, SampledFunction, Surface};
-use crate::diag::Span;
+use crate::diag::{Code, Diagnostic, Span};
 use crate::geometry::skeleton::Bone;
 use crate::geometry::skin::{Blend, Influences, Motion};
 use crate::math::Affine;
@@ -55,4 +55,25 @@ pub enum Weights {
     Listed(Arc<Influences>, Span),
     /// A function of the point at rest, to a weight for each joint, and where it was given.
     Function(Arc<SampledFunction>, Span),
+}
+
+impl Weights {
+    /// Whether they follow from where a point is, so that places between two vertices have weights too that change without a jump.
+    pub fn follow_the_point(&self) -> bool {
+        matches!(self, Weights::Smooth(_) | Weights::Function(..))
+    }
+}
+
+/// That a row of weights cannot be used. `whose` says which: "of vertex 3", "at <1, 2, 3>".
+pub fn unusable_weights(place: Option<Span>, whose: &str, why: &str) -> Diagnostic {
+    Diagnostic::new(Code::BadWeights, place, format!("the weights {whose} cannot be used: {why}"))
+        .hint("give each joint a weight of 0 or more, and one of them more than 0")
+}
+
+/// That rows of weights were divided by their sums, as the first of them shows.
+pub fn divided_weights(place: Option<Span>, whose: &str, sum: f64) -> Diagnostic {
+    let message = format!("the weights {whose} add up to {sum}, and not to 1");
+    Diagnostic::new(Code::WeightsNormalised, place, message)
+        .label("all weights were divided by their sums")
+        .hint("divide by the sum yourself, so that nothing is changed behind your back")
 }

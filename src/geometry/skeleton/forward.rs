@@ -62,6 +62,16 @@ pub struct Bone {
     pub end: DVec3,
 }
 
+impl Bone {
+    /// Adds a bone without length for each of so many joints that no bone begins at, where it is known where the joint is.
+    pub fn add_bare(bones: &mut Vec<Bone>, n_joints: usize, at: impl Fn(usize) -> Option<DVec3>) {
+        let mut is_bare = vec![true; n_joints];
+        bones.iter().for_each(|bone| is_bare[bone.joint] = false);
+        let bare = (0..n_joints).filter(|joint| is_bare[*joint]);
+        bones.extend(bare.filter_map(|joint| at(joint).map(|p| Bone { joint, start: p, end: p })));
+    }
+}
+
 impl Placement {
     /// Of a skeleton at these coordinates (one for each of the skeleton's).
     pub fn new(skeleton: &Skeleton, coordinates: &[f64]) -> Placement {
@@ -113,10 +123,7 @@ impl Placement {
         let to_tips =
             skeleton.tips.iter().map(|tip| bone(tip.joint, self.frames[tip.joint].point(tip.offset)));
         let mut bones: Vec<Bone> = between.chain(to_tips).collect();
-        let mut bare = vec![true; self.frames.len()];
-        bones.iter().for_each(|bone| bare[bone.joint] = false);
-        let alone = (0..bare.len()).filter(|&joint| bare[joint]);
-        bones.extend(alone.map(|joint| bone(joint, self.joint(joint))));
+        Bone::add_bare(&mut bones, self.frames.len(), |joint| Some(self.joint(joint)));
         bones
     }
 }

@@ -2,14 +2,17 @@
 //! the motion ask, so that what is seen is the bent surface and not a bent polyhedron.
 
 use super::Lowering;
-use super::surfaces::{form, tolerance};
+use super::surfaces::tolerance;
 use super::views::Views;
 use crate::diag::{Code, Diagnostic, Span};
 use crate::geometry::mesh::Mesh;
 use crate::geometry::patch::{Patch, tessellate};
 use crate::geometry::skin::{Influences, Motion, WeightError, bent_normals, deform, refine};
 use crate::math::{Aabb, Affine};
-use crate::scene::{Material, MeshSource, PatchNet, SampledFunction, Skin, SkinSurface, Surface, Weights};
+use crate::scene::{
+    Material, MeshSource, PatchNet, SampledFunction, Skin, SkinSurface, Surface, Weights, divided_weights,
+    unusable_weights,
+};
 use crate::world::shape::Form;
 use crate::world::shape::mesh::Worn;
 use glam::DVec3;
@@ -78,17 +81,14 @@ impl Lowering<'_> {
         let influences = self.said(skin, influences(skin, &mesh.positions))?;
         self.warn_of_sums(skin, &influences);
         let rest = mesh.positions.clone();
-        let normals =
-            match skin.weights {
-                Weights::Rigid | Weights::Listed(..) => None,
-                Weights::Smooth(_) | Weights::Function(..) => {
-                    let size = mesh.bounds().size().length();
-                    Some(self.said(
-                        skin,
-                        bent_normals(&rest, &mesh.normals, size, &|points| images(skin, points)),
-                    )?)
-                }
-            };
+        let normals = match skin.weights.follow_the_point() {
+            false => None,
+            true => {
+                let size = mesh.bounds().size().length();
+                let bent = bent_normals(&rest, &mesh.normals, size, &|points| images(skin, points));
+                Some(self.said(skin, bent)?)
+            }
+        };
         deform(&mut mesh, &influences.rows, &skin.armature.motions, skin.blend);
         mesh.normals = normals.unwrap_or(mesh.normals);
         let worn = Worn { rest, influences: influences.rows, armature: Arc::clone(&skin.armature) };
@@ -112,14 +112,7 @@ impl Lowering<'_> {
                 PatchNet::File { path, span } => self.patch_file(path, *span).map(Curved::Patch),
             };
         }
-        match form(surface) {
-            Ok(form) => Some(Curved::Form(Box::new(form))),
-            Err(fault) => {
-                let message = format!("this {} cannot be made: {fault}", surface.word());
-                self.sink.push(Diagnostic::new(Code::BadGeometry, span, message));
-                None
-            }
-        }
+        self.form(surface, span).map(|form| Curved::Form(Box::new(form)))
     }
 
     /// Passes a value on, or says why there is none.
@@ -129,13 +122,7 @@ impl Lowering<'_> {
 
     fn warn_of_sums(&mut self, skin: &Skin, rows: &Rows) {
         let Some((point, sum)) = rows.off else { return };
-        let message =
-            format!("the weights at <{}, {}, {}> add up to {sum}, and not to 1", point.x, point.y, point.z);
-        self.sink.push(
-            Diagnostic::new(Code::WeightsNormalised, place(skin), message)
-                .label("all weights were divided by their sums")
-                .hint("divide by the sum yourself, so that nothing is changed behind your back"),
-        );
+        self.sink.push(divided_weights(place(skin), &at(point), sum));
     }
 }
 
@@ -158,21 +145,22 @@ enum WeightFault {
 impl WeightFault {
     fn said(self, skin: &Skin) -> Diagnostic {
         match self {
-            WeightFault::Row(error, p) => {
-                let message = format!("the weights at <{}, {}, {}> cannot be used: {error}", p.x, p.y, p.z);
-                let hint = "give each joint a weight of 0 or more, and one of them more than 0";
-                Diagnostic::new(Code::BadWeights, place(skin), message).hint(hint)
-            }
+            WeightFault::Row(error, p) => unusable_weights(place(skin), &at(p), &error.to_string()),
             WeightFault::Count { rows, vertices } => {
                 let message = format!("`weights` has {rows} rows for the {vertices} vertices of its mesh");
                 Diagnostic::new(Code::BadWeights, place(skin), message).hint("give a row for each vertex")
             }
-            WeightFault::NoValue(at, why, p) => {
-                let message = format!("the weights at <{}, {}, {}> have no value: {why}", p.x, p.y, p.z);
-                Diagnostic::new(Code::BadWeights, at, message)
+            WeightFault::NoValue(span, why, p) => {
+                let message = format!("the weights {} have no value: {why}", at(p));
+                Diagnostic::new(Code::BadWeights, span, message)
             }
         }
     }
+}
+
+/// A point's weights, by where it is.
+fn at(p: DVec3) -> String {
+    format!("at <{}, {}, {}>", p.x, p.y, p.z)
 }
 
 /// Where the weights were given.
@@ -197,8 +185,7 @@ fn curved_at_rest(skin: &Skin, curved: &Curved, views: Option<Views>) -> Result<
     let growth = skin.armature.motions.iter().map(Motion::growth).fold(1.0, f64::max);
     let stretch = transform.map_or(1.0, |place| place.stretch().1);
     let mut mesh = placed(curved.mesh(REST_SHARE * allowed / (growth * stretch)), transform);
-    // What each vertex takes from one bone has no place between two vertices.
-    if !matches!(skin.weights, Weights::Rigid | Weights::Listed(..)) {
+    if skin.weights.follow_the_point() {
         refine(&mut mesh, (1.0 - REST_SHARE) * allowed, &|points| images(skin, points))?;
     }
     Ok(mesh)

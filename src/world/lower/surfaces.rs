@@ -76,17 +76,22 @@ impl Lowering<'_> {
         let views = self.surfaces.views_of(&source);
         let drawn = match &*source {
             Surface::Patch(patch) => self.patch(patch, views, span),
-            Surface::Tube(_) | Surface::Lathe(_) | Surface::Extrude(_) => match form(&source) {
-                Ok(form) => Some(Drawn::Shape(Shape::Swept(Arc::new(Swept::new(form))))),
-                Err(fault) => {
-                    let message = format!("this {} cannot be made: {fault}", source.word());
-                    self.sink.push(Diagnostic::new(Code::BadGeometry, span, message));
-                    None
-                }
-            },
+            Surface::Tube(_) | Surface::Lathe(_) | Surface::Extrude(_) => {
+                let form = self.form(&source, span);
+                form.map(|form| Drawn::Shape(Shape::Swept(Arc::new(Swept::new(form)))))
+            }
         };
         self.surfaces.by_source.insert(address, (drawn.clone(), source));
         drawn
+    }
+
+    /// The kernel of a surface along curves; says why there is none.
+    pub(super) fn form(&mut self, source: &Surface, span: Span) -> Option<Form> {
+        let said = |fault| {
+            let message = format!("this {} cannot be made: {fault}", source.word());
+            self.sink.push(Diagnostic::new(Code::BadGeometry, span, message));
+        };
+        form(source).map_err(said).ok()
     }
 
     fn patch(&mut self, source: &PatchSource, views: Option<Views>, span: Span) -> Option<Drawn> {
@@ -135,7 +140,7 @@ impl Lowering<'_> {
 }
 
 /// The kernel of a surface along curves. Its language looked for faults already; other makers may not have.
-pub(super) fn form(source: &Surface) -> Result<Form, String> {
+fn form(source: &Surface) -> Result<Form, String> {
     match source {
         Surface::Tube(tube) => {
             let (path, radius) = (of_measured(&tube.along), tube.radius.pieces());

@@ -64,14 +64,15 @@ impl Form {
 impl Swept {
     /// Ready for rays.
     pub fn new(form: Form) -> Swept {
-        let (bounds, size) = match &form {
-            Form::Tube(tube) => (tube.bounds(), 2.0 * tube.size()),
-            Form::Lathe(lathe) => (lathe.bounds(), lathe.size()),
-            Form::Prism(prism) => (prism.bounds(), prism.size()),
-            Form::Sweep(sweep) => (sweep.bounds(), sweep.size()),
+        let size = match &form {
+            Form::Tube(tube) => 2.0 * tube.size(),
+            Form::Lathe(lathe) => lathe.size(),
+            Form::Prism(prism) => prism.size(),
+            Form::Sweep(sweep) => sweep.size(),
         };
         let error = POINT_ROUNDINGS * UNIT_ROUNDOFF * size;
-        Swept { form, bounds: padded(bounds, DVec3::splat(error)), error }
+        let bounds = padded(form.bounds(), DVec3::splat(error));
+        Swept { form, bounds, error }
     }
 
     pub(super) fn meet(&self, ray: &LocalRay, limit: f64) -> Option<Meet> {

@@ -1,13 +1,13 @@
 //! The weights of a skin as a scene gives them.
 
-use crate::diag::{Code, Diagnostic};
+use crate::diag::Code;
 use crate::geometry::skin::Influences;
 use crate::geometry::skin::weights::{SUM_SLACK, WeightError};
 use crate::lang::builtins::components;
 use crate::lang::coerce::shown;
 use crate::lang::table::{Block, Context, Gives, Outcome};
 use crate::lang::value::Value;
-use crate::scene::{MeshSource, Object, SampleInput, Shape, Weights};
+use crate::scene::{MeshSource, Object, SampleInput, Shape, Weights, divided_weights, unusable_weights};
 use std::sync::Arc;
 
 /// Joints that move a point unless `influences` says otherwise.
@@ -59,6 +59,7 @@ fn check_surface(ctx: &mut dyn Context, block: &Block, surface: &Object, rows: u
 /// All rows; every one that cannot be used is said, and the first whose sum is not 1.
 fn listed(ctx: &mut dyn Context, block: &Block, rows: &[Value], n_joints: usize) -> Outcome<Influences> {
     ctx.reserve(rows.len(), block.place("weights"))?;
+    let place = Some(block.place("weights"));
     let (mut all, mut outcome, mut off) = (Influences::default(), Ok(()), None);
     for (vertex, row) in rows.iter().enumerate() {
         let sum = match numbers(row) {
@@ -77,18 +78,12 @@ fn listed(ctx: &mut dyn Context, block: &Block, rows: &[Value], n_joints: usize)
             }
             Ok(_) => {}
             Err(why) => {
-                let message = format!("the weights of vertex {vertex} cannot be used: {why}");
-                let hint = "give each joint a weight of 0 or more, and one of them more than 0";
-                outcome = Err(block.fault(ctx, Code::BadWeights, "weights", message, hint));
+                outcome = Err(ctx.fail(unusable_weights(place, &format!("of vertex {vertex}"), &why)));
             }
         }
     }
     if let Some((vertex, sum)) = off {
-        let message = format!("the weights of vertex {vertex} add up to {sum}, and not to 1");
-        let said = Diagnostic::new(Code::WeightsNormalised, block.place("weights"), message)
-            .label("all weights were divided by their sums")
-            .hint("divide by the sum yourself, so that nothing is changed behind your back");
-        ctx.report(said);
+        ctx.report(divided_weights(place, &format!("of vertex {vertex}"), sum));
     }
     outcome.map(|()| all)
 }

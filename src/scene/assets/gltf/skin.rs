@@ -88,17 +88,14 @@ fn bones(joints: &[usize], tree: &Tree, inverse_binds: &[Place]) -> Vec<Bone> {
         joints.iter().position(|node| *node == parent)
     };
     let mut bones = Vec::new();
-    let mut is_bare = vec![true; joints.len()];
     for end in 0..joints.len() {
         if let Some(start) = above(end)
             && let (Some(from), Some(to)) = (at(start), at(end))
         {
-            is_bare[start] = false;
             bones.push(Bone { joint: start, start: from, end: to });
         }
     }
-    let bare = (0..joints.len()).filter(|joint| is_bare[*joint]);
-    bones.extend(bare.filter_map(|joint| at(joint).map(|p| Bone { joint, start: p, end: p })));
+    Bone::add_bare(&mut bones, joints.len(), at);
     bones
 }
 
