@@ -1,6 +1,7 @@
 //! The two forms of a file: JSON text, or a .glb with the JSON and a chunk of bytes in it.
 
-use gltf::json::{self, Root};
+use gltf::Gltf;
+use gltf::json::Root;
 
 const MAGIC: &[u8] = b"glTF";
 const JSON: &[u8] = b"JSON";
@@ -14,8 +15,8 @@ const CHUNK_HEADER: usize = 8;
 pub(super) fn open(bytes: &[u8]) -> Result<(Root, Option<Vec<u8>>), String> {
     let (text, binary) = if bytes.starts_with(MAGIC) { chunks(bytes)? } else { (bytes, None) };
     let text = text.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(text);
-    let root: Root =
-        json::deserialize::from_slice(text).map_err(|e| format!("its JSON cannot be read: {e}"))?;
+    let read = Gltf::from_slice_without_validation(text);
+    let root = read.map_err(|e| format!("its JSON cannot be read: {e}"))?.document.into_json();
     if !root.asset.version.starts_with("2.") {
         return Err(format!("it is of glTF {}, and only glTF 2 is read", root.asset.version));
     }
