@@ -1,5 +1,7 @@
 //! Pictures as files: 8-bit sRGB as PNG and JPEG, linear radiance as HDR (RGBE) and EXR (32-bit float, with metadata).
-//! A file appears whole or not at all: it is written beside its place and renamed.
+//! A file appears whole or not at all: it is written beside its place and renamed. Many pictures in one file are [`movie`]s.
+
+pub mod movie;
 
 use super::film::Film;
 use crate::math::colour::{luminance, srgb_decode};
