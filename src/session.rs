@@ -1,6 +1,7 @@
 //! The one door to the library for the command line, the tests and the REPL: a [`Session`] holds the sources, the options
 //! and the loader, and turns a file into a scene with everything that is wrong with it.
 
+pub mod animation;
 mod answer;
 pub mod dialogue;
 pub mod inspect;
@@ -10,7 +11,7 @@ mod run;
 mod trace;
 pub mod whole;
 
-use crate::diag::{Code, Diagnostic, SourceMap};
+use crate::diag::{Code, Diagnostic, Sink, SourceMap};
 use crate::scene::Scene;
 use crate::scene::assets::{DiskLoader, Loader};
 use dialogue::Reply;
@@ -54,6 +55,11 @@ pub struct Evaluated {
 }
 
 impl Evaluated {
+    /// Of a file that could not be read.
+    fn nothing(sink: Sink) -> Evaluated {
+        Evaluated { scene: Scene::default(), diagnostics: sink.into_sorted(), printed: Vec::new() }
+    }
+
     /// True where an error was found.
     pub fn has_errors(&self) -> bool {
         self.diagnostics.iter().any(|d| d.severity == crate::diag::Severity::Error)

@@ -91,6 +91,16 @@ pub trait Context {
     fn tracer(&self) -> &dyn Trace;
     /// `time` and `frame` of this evaluation.
     fn time(&self) -> (f64, f64);
+    /// In an animation, where a reach of the pose at this place starts that is given these coordinates; none where it is to start from
+    /// these.
+    fn start_of_reach(&self, pose: Span, given: &[f64]) -> Option<Vec<f64>> {
+        let _ = (pose, given);
+        None
+    }
+    /// Tells where that reach ended, for the next frame.
+    fn reached(&mut self, pose: Span, given: &[f64], found: &[f64]) {
+        let _ = (pose, given, found);
+    }
 }
 
 /// A kind of block.

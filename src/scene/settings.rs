@@ -33,6 +33,11 @@ pub struct RenderSettings {
     pub span: Option<Span>,
 }
 
+impl RenderSettings {
+    /// Frames per second where nothing is said.
+    pub const FPS: f64 = 24.0;
+}
+
 /// The tracers by name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[allow(missing_docs, reason = "the names are the words of the language")]

@@ -269,6 +269,7 @@ impl Dialogue<'_> {
         state.standing.begin();
         let Dialogue { options, loader, cancel, stack, .. } = *self;
         let tracer = Tracer::new(loader, options.limits);
+        let tracer = &tracer;
         let mut means = Means { sources: self.sources, options, loader, tracer, cancel, stack };
         let done = evaluate(state, &mut means, &mut sink);
         let interrupted = cancel.is_some_and(|asked| asked.load(Ordering::SeqCst));

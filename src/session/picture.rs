@@ -10,9 +10,9 @@ use crate::render::settings::{Crop, ResolvedSettings};
 use crate::render::tiles::{self, Picture, Progress};
 use crate::render::whitted::Whitted;
 use crate::render::{self, Tracer};
-use crate::scene::assets::Loader;
+use crate::scene::assets::{AssetCache, Loader};
 use crate::scene::{Camera, RenderSettings, Scene};
-use crate::world::{World, WorldOptions};
+use crate::world::{Kept, World, WorldOptions};
 use std::sync::Mutex;
 use std::sync::atomic::AtomicBool;
 
@@ -61,6 +61,17 @@ pub fn prepare(
     settings: ResolvedSettings,
     loader: &dyn Loader,
 ) -> (Option<Prepared>, Vec<Diagnostic>) {
+    prepare_frame(scene, job, settings, &AssetCache::new(loader), &mut Kept::default())
+}
+
+/// The same for a frame of an animation, with what is left of the frames before.
+pub fn prepare_frame(
+    scene: Scene,
+    job: &Job,
+    settings: ResolvedSettings,
+    assets: &AssetCache<'_>,
+    kept: &mut Kept,
+) -> (Option<Prepared>, Vec<Diagnostic>) {
     let mut found = whole::faults(&scene, true);
     let view = match choose(&scene, job.camera.as_deref()) {
         Ok(Some(camera)) => View::new(camera, settings.size)
@@ -74,7 +85,7 @@ pub fn prepare(
     };
     let Some(view) = view else { return (None, found) };
     let options = WorldOptions { accelerator: settings.accelerator, footprint: Some(view.footprint()) };
-    let (world, of_world) = World::new(scene.nodes, &options, loader);
+    let (world, of_world) = World::with_assets(scene.nodes, &options, assets, kept);
     found.extend(of_world);
     let tracer = tracer(&world, &settings, &mut found);
     let has_errors = found.iter().any(|d| d.severity == crate::diag::Severity::Error);

@@ -8,7 +8,6 @@ use crate::lang::limits::{Limits, exceeded};
 use crate::lang::resolve::known::{Known, Names};
 use crate::lang::resolve::load::{FileId, Files, Reading};
 use crate::lang::resolve::{Setting, resolve};
-use crate::scene::Scene;
 use crate::scene::assets::Loader;
 use crate::syntax::ast;
 use crate::syntax::build::{ParseLimits, parse_expression};
@@ -45,7 +44,7 @@ pub(super) struct Means<'m> {
     pub sources: &'m mut SourceMap,
     pub options: &'m Options,
     pub loader: &'m dyn Loader,
-    pub tracer: Tracer<'m>,
+    pub tracer: &'m Tracer<'m>,
     pub cancel: Option<&'m AtomicBool>,
     pub stack: usize,
 }
@@ -63,7 +62,7 @@ pub(super) fn evaluate(
     on_deep_stack(&options.limits, |stack| {
         let mut sink = Sink::default();
         let tracer = Tracer::new(loader, options.limits);
-        let mut means = Means { sources, options, loader, tracer, cancel: None, stack };
+        let mut means = Means { sources, options, loader, tracer: &tracer, cancel: None, stack };
         let mut state = State::default();
         let Some(file) = state.read(&mut means, root, &mut sink) else { return empty(sink) };
         let set = settings(&mut means, &mut sink);
@@ -76,15 +75,13 @@ pub(super) fn evaluate(
     })
 }
 
-fn printed(said: Vec<Said>) -> Vec<String> {
+pub(super) fn printed(said: Vec<Said>) -> Vec<String> {
     let text = |said| if let Said::Printed(text) = said { Some(text) } else { None };
     said.into_iter().filter_map(text).collect()
 }
 
 fn empty(sink: Sink) -> Outcome {
-    let evaluated =
-        Evaluated { scene: Scene::default(), diagnostics: sink.into_sorted(), printed: Vec::new() };
-    Outcome { evaluated, attempts: Attempts { failed: true, setting: true } }
+    Outcome { evaluated: Evaluated::nothing(sink), attempts: Attempts { failed: true, setting: true } }
 }
 
 impl State {
@@ -139,7 +136,7 @@ impl Means<'_> {
             program: &known.program,
             files,
             loader: self.loader,
-            tracer: &self.tracer,
+            tracer: self.tracer,
             limits: self.options.limits,
             time: (self.options.time, f64::from(self.options.frame)),
             stack: self.stack,

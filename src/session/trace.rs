@@ -5,7 +5,7 @@ use crate::lang::limits::{Limits, exceeded};
 use crate::lang::table::{Trace, Traced};
 use crate::scene::assets::{AssetCache, Loader};
 use crate::scene::{Node, Object};
-use crate::world::{Hit, World};
+use crate::world::{Hit, Kept, World};
 use glam::DVec3;
 use std::cell::RefCell;
 use std::collections::HashMap;
@@ -22,6 +22,7 @@ const BYTES_A_HIT: u64 = 1 << 10;
 pub(super) struct Tracer<'a> {
     assets: AssetCache<'a>,
     limits: Limits,
+    kept: RefCell<Kept>,
     /// By address; the object is kept so that no other takes its place.
     ready: RefCell<HashMap<*const Object, (Arc<Object>, Ready)>>,
 }
@@ -31,7 +32,12 @@ type Ready = Rc<Result<World, Vec<Diagnostic>>>;
 
 impl<'a> Tracer<'a> {
     pub fn new(loader: &'a dyn Loader, limits: Limits) -> Self {
-        Tracer { assets: AssetCache::new(loader), limits, ready: RefCell::default() }
+        Tracer {
+            assets: AssetCache::new(loader),
+            limits,
+            kept: RefCell::default(),
+            ready: RefCell::default(),
+        }
     }
 
     /// Most hits of one ray, by the guards of lists and of memory.
@@ -53,7 +59,8 @@ impl<'a> Tracer<'a> {
         if let Some((_, known)) = ready.get(&Arc::as_ptr(object)) {
             return Rc::clone(known);
         }
-        let (world, found) = World::of_shapes(vec![Node::Object(Arc::clone(object))], &self.assets);
+        let nodes = vec![Node::Object(Arc::clone(object))];
+        let (world, found) = World::of_shapes(nodes, &self.assets, &mut self.kept.borrow_mut());
         let errors: Vec<Diagnostic> = found.into_iter().filter(|d| d.severity == Severity::Error).collect();
         let made = Rc::new(if errors.is_empty() { Ok(world) } else { Err(errors) });
         if ready.len() >= MOST_KEPT {

@@ -14,7 +14,7 @@ mod views;
 use super::aggregate::{Aggregate, Group, INHERITED, Instance, Item, Scope};
 use super::bvh::Tree;
 use super::shape::{self, EVERYTHING};
-use super::{World, WorldOptions};
+use super::{Kept, World, WorldOptions};
 use crate::diag::{Code, Diagnostic, Sink, Span};
 use crate::math::Affine;
 use crate::scene::assets::AssetCache;
@@ -39,16 +39,21 @@ pub(super) fn lower(
     nodes: Vec<Node>,
     options: &WorldOptions,
     assets: &AssetCache<'_>,
+    kept: &mut Kept,
 ) -> (World, Vec<Diagnostic>) {
-    let (aggregates, materials, mut sink) = lowered(nodes, options, assets);
+    let (aggregates, materials, mut sink) = lowered(nodes, options, assets, kept);
     sink.extend(super::texture::load_pictures(materials.iter().map(|m| &**m), assets));
     let (lights, emitters) = lights::gather(&aggregates, &materials, &mut sink);
     (settled(World { lights, emitters, aggregates, materials }), sink.into_sorted())
 }
 
 /// See [`World::of_shapes`].
-pub(super) fn lower_shapes(nodes: Vec<Node>, assets: &AssetCache<'_>) -> (World, Vec<Diagnostic>) {
-    let (aggregates, materials, sink) = lowered(nodes, &WorldOptions::default(), assets);
+pub(super) fn lower_shapes(
+    nodes: Vec<Node>,
+    assets: &AssetCache<'_>,
+    kept: &mut Kept,
+) -> (World, Vec<Diagnostic>) {
+    let (aggregates, materials, sink) = lowered(nodes, &WorldOptions::default(), assets, kept);
     let (lights, emitters) = (Vec::new(), Vec::new());
     (settled(World { lights, emitters, aggregates, materials }), sink.into_sorted())
 }
@@ -66,11 +71,15 @@ fn lowered(
     nodes: Vec<Node>,
     options: &WorldOptions,
     assets: &AssetCache<'_>,
+    kept: &mut Kept,
 ) -> (Vec<Aggregate>, Vec<Arc<Material>>, Sink) {
+    let with_trees = options.accelerator != Accelerator::None;
+    kept.begin(with_trees);
     let mut lowering = Lowering {
         survey: Survey::of(&nodes),
-        with_trees: options.accelerator != Accelerator::None,
+        with_trees,
         assets,
+        kept,
         sink: Sink::default(),
         materials: Materials::new(),
         aggregates: vec![Aggregate::Group(Group::default())],
@@ -93,6 +102,8 @@ struct Lowering<'a> {
     survey: Survey,
     with_trees: bool,
     assets: &'a AssetCache<'a>,
+    /// Of worlds made before.
+    kept: &'a mut Kept,
     sink: Sink,
     materials: Materials,
     aggregates: Vec<Aggregate>,

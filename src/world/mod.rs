@@ -11,6 +11,7 @@ mod emitter;
 mod every;
 mod footprint;
 mod hit;
+mod kept;
 pub mod light;
 pub mod lower;
 mod place;
@@ -21,6 +22,7 @@ pub mod texture;
 pub use emitter::{Emitter, EmitterShape, PlacedLight};
 pub use footprint::Footprint;
 pub use hit::{Hit, SurfacePoint};
+pub use kept::Kept;
 
 use aggregate::Aggregate;
 use query::Query;
@@ -121,21 +123,22 @@ pub type Transmittance = Rgb;
 impl World {
     /// Flattens a scene's nodes (taking them, so that each is freed as it goes), reads the meshes they place, and builds the trees.
     pub fn new(nodes: Vec<Node>, options: &WorldOptions, loader: &dyn Loader) -> (World, Vec<Diagnostic>) {
-        World::with_assets(nodes, options, &AssetCache::new(loader))
+        World::with_assets(nodes, options, &AssetCache::new(loader), &mut Kept::default())
     }
 
-    /// The same with files that were perhaps read before, for the frames of an animation.
+    /// The same with files that were perhaps read before, and meshes of worlds before it, for the frames of an animation.
     pub fn with_assets(
         nodes: Vec<Node>,
         options: &WorldOptions,
         assets: &AssetCache<'_>,
+        kept: &mut Kept,
     ) -> (World, Vec<Diagnostic>) {
-        lower::lower(nodes, options, assets)
+        lower::lower(nodes, options, assets, kept)
     }
 
     /// A world of which nothing but shapes will be asked: pictures and lights are left out.
-    pub fn of_shapes(nodes: Vec<Node>, assets: &AssetCache<'_>) -> (World, Vec<Diagnostic>) {
-        lower::lower_shapes(nodes, assets)
+    pub fn of_shapes(nodes: Vec<Node>, assets: &AssetCache<'_>, kept: &mut Kept) -> (World, Vec<Diagnostic>) {
+        lower::lower_shapes(nodes, assets, kept)
     }
 
     /// The first thing a ray meets, before `t_max`, that is not hidden from it.

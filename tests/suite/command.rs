@@ -41,7 +41,7 @@ fn every_format_can_be_written_and_read_again() {
         let result: serde_json::Value = serde_json::from_str(run.out()).unwrap();
         assert!(result["rmse"].as_f64().unwrap() < 0.05, "{name}: {result}");
     }
-    let run = folder.ogee("render ball.scene -o a.gif").expect(2);
+    let run = folder.ogee("render ball.scene -o a.tiff").expect(2);
     assert!(run.stderr.contains("pictures are .png, .jpg, .hdr or .exr"), "{}", run.stderr);
 }
 

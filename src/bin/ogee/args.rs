@@ -3,6 +3,7 @@
 use clap::{Args, Parser, Subcommand, ValueEnum, ValueHint};
 use clap_complete::Shell;
 use ogee::scene::{Accelerator, TracerKind};
+use std::ops::Range;
 use std::path::PathBuf;
 use std::str::FromStr;
 
@@ -130,7 +131,8 @@ pub struct Render {
     /// The scene; `-` reads standard input
     #[arg(value_hint = ValueHint::FilePath)]
     pub file: PathBuf,
-    /// The picture: .png, .jpg, .hdr or .exr; `-` writes PNG to standard output [default: the scene's name, .png]
+    /// The picture: .png, .jpg, .hdr or .exr; with `{frame:04}` in its name one a frame, as .gif or .apng all frames; `-` writes PNG to
+    /// standard output [default: the scene's name, .png, or .gif for several frames]
     #[arg(short, long, value_name = "PICTURE", value_hint = ValueHint::FilePath)]
     pub output: Option<PathBuf>,
     /// Width and height in pixels
@@ -156,9 +158,12 @@ pub struct Render {
     pub camera: Option<String>,
     #[command(flatten)]
     pub evaluation: Evaluation,
-    /// Render these frames of an animation: `0..24`
-    #[arg(long, value_name = "A..B")]
-    pub frames: Option<String>,
+    /// Render these frames of an animation, the second not among them: `0..24`; with it: `0..=23`; one alone: `17` [default: all]
+    #[arg(long, value_name = "A..B", value_parser = frames, conflicts_with = "time")]
+    pub frames: Option<Range<u32>>,
+    /// Render only the frames whose files are not there yet
+    #[arg(long)]
+    pub resume: bool,
     /// Render a part of the picture alone, in pixels from its top left corner
     #[arg(long, value_name = "X,Y,W,H", value_parser = crop)]
     pub crop: Option<[u32; 4]>,
@@ -457,6 +462,23 @@ fn size(text: &str) -> Result<[u32; 2], String> {
     }
 }
 
+/// Half open, as ranges of the language are; or with `..=`, or one number.
+fn frames(text: &str) -> Result<Range<u32>, String> {
+    let number = |text: &str| text.trim().parse::<u32>().ok().filter(|n| *n < u32::MAX);
+    let range = match (text.split_once("..="), text.split_once("..")) {
+        (Some((first, last)), _) => number(first).zip(number(last).map(|last| last + 1)),
+        (None, Some((first, end))) => number(first).zip(number(end)),
+        (None, None) => number(text).map(|frame| (frame, frame + 1)),
+    };
+    match range {
+        None => Err("write it as 0..24 for frames 0 to 23, or 0..=23".to_owned()),
+        Some((first, end)) if first >= end => {
+            Err(format!("there is no frame in it; {first}..={first} is one"))
+        }
+        Some((first, end)) => Ok(first..end),
+    }
+}
+
 fn crop(text: &str) -> Result<[u32; 4], String> {
     let numbers: Option<Vec<u32>> = text.split(',').map(|part| part.trim().parse().ok()).collect();
     match numbers.as_deref() {
@@ -472,6 +494,21 @@ mod tests {
     #[test]
     fn the_definition_of_the_command_line_is_sound() {
         <Ogee as clap::CommandFactory>::command().debug_assert();
+    }
+
+    #[test]
+    fn frames_are_half_open_unless_they_say_otherwise() {
+        assert_eq!(frames("0..24"), Ok(0..24));
+        assert_eq!(frames("3..=5"), Ok(3..6));
+        assert_eq!(frames("17"), Ok(17..18));
+        for bad in
+            ["", "..", "4..", "..4", "a..b", "-1..3", "0...3", "1.5..2", "0..99999999999", "0..4294967296"]
+        {
+            assert!(frames(bad).unwrap_err().contains("0..24"), "{bad}");
+        }
+        for empty in ["5..5", "9..3", "9..=3", "4294967295..=3"] {
+            assert!(frames(empty).is_err(), "{empty}");
+        }
     }
 
     #[test]

@@ -83,6 +83,14 @@ impl Context for Evaluator<'_> {
     fn time(&self) -> (f64, f64) {
         self.run.time
     }
+
+    fn start_of_reach(&self, pose: Span, given: &[f64]) -> Option<Vec<f64>> {
+        self.carried_start(pose, given)
+    }
+
+    fn reached(&mut self, pose: Span, given: &[f64], found: &[f64]) {
+        self.carry_reach(pose, given, found);
+    }
 }
 
 impl compile::Host for Evaluator<'_> {

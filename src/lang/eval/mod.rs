@@ -6,6 +6,7 @@
 
 mod blocks;
 mod calls;
+mod carried;
 mod context;
 mod equal;
 mod expressions;
@@ -30,15 +31,13 @@ use super::table::{Outcome, Reported, Trace};
 use super::value::{Given, Value};
 use crate::diag::{Sink, SourceId, Span};
 use crate::scene::assets::Loader;
-use crate::scene::assets::gltf::{Model, ModelError};
 use crate::scene::{Camera, Figure, Node, RenderSettings, Scene};
+use carried::{Carried, Models};
 use guards::Guards;
 use nested::Nested;
 use slots::{Captured, Slot};
 use std::collections::HashMap;
-use std::path::PathBuf;
 use std::rc::Rc;
-use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 use undo::Undo;
 
@@ -73,6 +72,8 @@ pub struct Standing {
     /// What groups of groups come to, by the address of their children.
     nested: HashMap<*const Node, Nested>,
     undo: Option<Undo>,
+    /// In an animation alone.
+    carried: Option<Box<Carried>>,
 }
 
 /// Something that a run says by the way.
@@ -120,6 +121,7 @@ pub fn run(run: &Run<'_>, standing: &mut Standing, sink: &mut Sink) -> Ran {
         attempts: top.attempts,
         said: std::mem::take(&mut evaluator.said),
     };
+    evaluator.standing.keep_models(evaluator.models);
     *standing = evaluator.standing;
     ran
 }
@@ -207,13 +209,14 @@ struct Evaluator<'p> {
     sink: &'p mut Sink,
     said: Vec<Said>,
     /// Models whose files were asked for what stands in them.
-    models: HashMap<PathBuf, Result<Arc<Model>, ModelError>>,
+    models: Models,
 }
 
 impl<'p> Evaluator<'p> {
     fn new(run: &'p Run<'p>, mut standing: Standing, sink: &'p mut Sink) -> Self {
         standing.globals.resize_with(run.program.globals.len(), Slot::default);
         standing.units_done.resize(run.program.units.len(), false);
+        let models = standing.take_models();
         Evaluator {
             run,
             program: run.program,
@@ -229,7 +232,7 @@ impl<'p> Evaluator<'p> {
             guards: Guards::new(&run.limits, run.stack),
             sink,
             said: Vec::new(),
-            models: HashMap::new(),
+            models,
         }
     }
 

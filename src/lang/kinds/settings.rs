@@ -185,7 +185,12 @@ pub static RENDER: Kind = Kind {
             "from radiance to the 0 … 1 of 8-bit pictures; HDR and EXR files keep the radiance",
         ),
         Property::new("background", &[&[Type::Colour]], "0", "seen where nothing else is; it lights nothing"),
-        Property::new("frames", COUNT, "1", "frames of an animation; `time` is frame / frames"),
+        Property::new(
+            "frames",
+            COUNT,
+            "1",
+            "frames of an animation, of which `ogee render` makes all; `time` is frame / frames",
+        ),
         Property::new("fps", &[&[Type::Positive]], "24", "frames per second"),
     ],
     children: false,

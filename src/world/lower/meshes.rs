@@ -6,10 +6,10 @@ use crate::geometry::mesh::Mesh;
 use crate::scene::assets::obj::load_obj;
 use crate::scene::{Material, MeshSource};
 use crate::world::aggregate::{Aggregate, MeshAggregate};
+use crate::world::kept::{FileKey, KeptMesh};
 use crate::world::shape::EVERYTHING;
 use crate::world::shape::mesh::{MeshShape, Worn};
 use std::collections::HashMap;
-use std::path::PathBuf;
 use std::sync::Arc;
 
 /// Aggregates of meshes by where they come from; none where a mesh cannot be used, which is said once.
@@ -17,7 +17,7 @@ use std::sync::Arc;
 pub(super) struct Meshes {
     /// By address; the source is kept so that no other takes its place.
     by_source: HashMap<*const MeshSource, (Option<u32>, Arc<MeshSource>)>,
-    by_file: HashMap<(PathBuf, Option<bool>), Option<u32>>,
+    by_file: HashMap<FileKey, Option<u32>>,
 }
 
 impl Lowering<'_> {
@@ -31,11 +31,26 @@ impl Lowering<'_> {
             Ok(MeshSource::Inline(mesh)) => self.keep_mesh(mesh, Vec::new(), span),
             Ok(file @ MeshSource::File { .. }) => self.mesh_of(&file, span),
             Err(shared) => {
-                let index = self.mesh_of(&shared, span);
+                let index = self.shared_mesh(&shared, span);
                 self.meshes.by_source.insert(address, (index, shared));
                 index
             }
         }
+    }
+
+    /// A mesh that others hold as well: perhaps a world before, and perhaps one after.
+    fn shared_mesh(&mut self, source: &Arc<MeshSource>, span: Span) -> Option<u32> {
+        let MeshSource::Inline(mesh) = &**source else { return self.mesh_of(source, span) };
+        let known = self.kept.shared(source);
+        let shape = match known {
+            Some(shape) => shape,
+            None => {
+                let shape = self.shape_of(mesh.clone(), None, span)?;
+                self.kept.keep_shared(source, Arc::clone(&shape));
+                shape
+            }
+        };
+        Some(self.keep_shape(shape, Vec::new()))
     }
 
     fn mesh_of(&mut self, source: &MeshSource, span: Span) -> Option<u32> {
@@ -46,29 +61,32 @@ impl Lowering<'_> {
                 if let Some(known) = self.meshes.by_file.get(&key) {
                     return *known;
                 }
-                let (mesh, materials) = self.read_mesh(&key, *span);
-                let index = mesh.and_then(|mesh| self.keep_mesh(mesh, materials, *span));
+                let index =
+                    self.mesh_of_file(&key, *span).map(|kept| self.keep_shape(kept.shape, kept.materials));
                 self.meshes.by_file.insert(key, index);
                 index
             }
         }
     }
 
-    pub(super) fn read_mesh(
-        &mut self,
-        key: &(PathBuf, Option<bool>),
-        span: Span,
-    ) -> (Option<Mesh>, Vec<Arc<Material>>) {
-        match load_obj(self.assets, &key.0, key.1, span) {
-            Ok(loaded) => {
-                self.sink.extend(loaded.warnings);
-                (Some(loaded.mesh), loaded.materials)
-            }
-            Err(fault) => {
-                self.sink.push(*fault);
-                (None, Vec::new())
-            }
+    fn mesh_of_file(&mut self, key: &FileKey, span: Span) -> Option<KeptMesh> {
+        if let Some(known) = self.kept.file(key) {
+            return Some(known);
         }
+        let loaded =
+            load_obj(self.assets, &key.0, key.1, span).map_err(|fault| self.sink.push(*fault)).ok()?;
+        self.sink.extend(loaded.warnings);
+        let shape = self.shape_of(loaded.mesh, None, span)?;
+        let kept = KeptMesh { shape, materials: loaded.materials };
+        self.kept.keep_file(key.clone(), kept.clone());
+        Some(kept)
+    }
+
+    /// The mesh of a file without a tree, to be bent.
+    pub(super) fn read_mesh(&mut self, key: &FileKey, span: Span) -> Option<(Mesh, Vec<Arc<Material>>)> {
+        let loaded = self.assets.mesh(&key.0, key.1, span).map_err(|fault| self.sink.push(*fault)).ok()?;
+        self.sink.extend(loaded.warnings.iter().cloned());
+        Some((loaded.mesh.clone(), loaded.materials.clone()))
     }
 
     /// Builds the tree of a mesh.
@@ -84,14 +102,23 @@ impl Lowering<'_> {
         materials: Vec<Arc<Material>>,
         span: Span,
     ) -> Option<u32> {
+        let shape = self.shape_of(mesh, worn, span)?;
+        Some(self.keep_shape(shape, materials))
+    }
+
+    /// A mesh with its tree; none, said, where it has no triangles.
+    fn shape_of(&mut self, mesh: Mesh, worn: Option<Worn>, span: Span) -> Option<Arc<MeshShape>> {
         if mesh.triangles.is_empty() {
             let message = "this mesh has no triangles: nothing of it is seen";
             self.sink.push(Diagnostic::new(Code::MeshRepaired, span, message));
             return None;
         }
+        Some(Arc::new(MeshShape::new(Arc::new(mesh), worn, self.with_trees)))
+    }
+
+    fn keep_shape(&mut self, shape: Arc<MeshShape>, materials: Vec<Arc<Material>>) -> u32 {
         let materials = materials.into_iter().map(|m| self.materials.number(m)).collect();
-        let shape = Arc::new(MeshShape::new(Arc::new(mesh), worn, self.with_trees));
         let bounds = if shape.tree.is_unbounded() { EVERYTHING } else { shape.tree.bounds() };
-        Some(self.keep(Aggregate::Mesh(MeshAggregate { shape, bounds, materials })))
+        self.keep(Aggregate::Mesh(MeshAggregate { shape, bounds, materials }))
     }
 }

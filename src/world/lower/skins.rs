@@ -98,10 +98,7 @@ impl Lowering<'_> {
     fn mesh_at_rest(&mut self, source: &MeshSource) -> Option<(Mesh, Vec<Arc<Material>>)> {
         match source {
             MeshSource::Inline(mesh) => Some((mesh.clone(), Vec::new())),
-            MeshSource::File { path, smooth, span } => {
-                let (mesh, materials) = self.read_mesh(&(path.clone(), *smooth), *span);
-                mesh.map(|mesh| (mesh, materials))
-            }
+            MeshSource::File { path, smooth, span } => self.read_mesh(&(path.clone(), *smooth), *span),
         }
     }
 

@@ -24,22 +24,34 @@ impl Seconds {
     fn total(&self) -> f64 {
         self.evaluate.0 + self.world.0 + self.render.0 + self.write.0
     }
+
+    /// Adds those of another picture.
+    pub fn add(&mut self, other: &Seconds) {
+        self.evaluate.0 += other.evaluate.0;
+        self.world.0 += other.world.0;
+        self.render.0 += other.render.0;
+        self.write.0 += other.write.0;
+    }
 }
 
 /// "first.png  640×480  0.41 s  4 samples a pixel  3.1 M rays".
 pub fn line(name: &str, film: &Film, settings: &ResolvedSettings, seconds: &Seconds) -> String {
     let name = if name == "-" { "picture" } else { name };
+    let part = match film.is_complete() {
+        true => String::new(),
+        false => format!("  ({:.0} % done when interrupted)", 100.0 * film.share_finished()),
+    };
+    format!("{name}  {}{part}", made(settings, film.report.rays.total(), seconds))
+}
+
+/// "640×480  0.41 s  4 samples a pixel  3.1 M rays".
+pub fn made(settings: &ResolvedSettings, rays: u64, seconds: &Seconds) -> String {
     let [w, h] = [settings.crop.width, settings.crop.height];
     let samples = match settings.samples {
         1 => "1 sample a pixel".to_owned(),
         n => format!("{n} samples a pixel"),
     };
-    let rays = count(film.report.rays.total());
-    let part = match film.is_complete() {
-        true => String::new(),
-        false => format!("  ({:.0} % done when interrupted)", 100.0 * film.share_finished()),
-    };
-    format!("{name}  {w}×{h}  {}  {samples}  {rays} rays{part}", duration(seconds.total()))
+    format!("{w}×{h}  {}  {samples}  {} rays", duration(seconds.total()), count(rays))
 }
 
 /// "950", "3.1 k", "12 M".
@@ -66,14 +78,22 @@ fn duration(seconds: f64) -> String {
     }
 }
 
-/// One object; its keys are described in `docs/command.md`.
-pub fn json(scene: &Path, output: &str, film: &Film, prepared: &Prepared, seconds: &Seconds) -> String {
+/// One object, of a picture or of a frame by its number; its keys are described in `docs/command.md`.
+pub fn json(
+    scene: &Path,
+    output: &str,
+    frame: Option<u32>,
+    film: &Film,
+    prepared: &Prepared,
+    seconds: &Seconds,
+) -> String {
     let settings = &prepared.settings;
     let rays = film.report.rays;
     let object = serde_json::json!({
         "schema": 1,
         "scene": scene.display().to_string(),
         "output": output,
+        "frame": frame,
         "size": settings.size,
         "crop": [settings.crop.x, settings.crop.y, settings.crop.width, settings.crop.height],
         "tracer": tracer_word(settings.tracer),

@@ -38,7 +38,8 @@ pub static POSE: Kind = Kind {
             "reach",
             &[&[Type::Label, Type::Vector3]],
             "",
-            "a tip, and the point where it should be",
+            "a tip, and the point where it should be. In an animation it goes on from where it ended in the frame before, but for angles that are \
+             given otherwise there; with `at`, from its moment",
         )
         .repeats(),
         Property::new(
@@ -91,7 +92,7 @@ fn pose(ctx: &mut dyn Context, mut block: Block) -> Outcome {
     let asked = reach::asked(ctx, &block, &from.rig().skeleton);
     joints?;
     let reached = match asked? {
-        Some(asked) => Some(reach::reach(ctx, &asked, &from.rig().skeleton, &mut coordinates)?),
+        Some(asked) => Some(reach::reach(ctx, &asked, &block, &from.rig().skeleton, &mut coordinates)?),
         None => None,
     };
     Ok(Value::Pose(Arc::new(Pose::new(from.rig().clone(), coordinates, reached, block.span))))

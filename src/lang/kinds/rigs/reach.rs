@@ -83,15 +83,19 @@ fn settings(block: &Block) -> Settings {
     }
 }
 
-/// Solves from these coordinates on, and warns where a target is not reached.
+/// Solves from these coordinates on, or in an animation from where the frame before ended, and warns where a target is not reached. A
+/// moment of motion capture is a better start than the frame before: it does not drift.
 pub(super) fn reach(
     ctx: &mut dyn Context,
     asked: &Asked,
+    block: &Block,
     skeleton: &Skeleton,
     coordinates: &mut Vec<f64>,
 ) -> Outcome<Reach> {
     let goals: Vec<Goal> = asked.goals.iter().map(|(goal, _)| *goal).collect();
-    let found = ik::solve(skeleton, &goals, coordinates, &asked.settings);
+    let carried = if block.has("at") { None } else { ctx.start_of_reach(block.span, coordinates) };
+    let found = ik::solve(skeleton, &goals, carried.as_deref().unwrap_or(coordinates), &asked.settings);
+    ctx.reached(block.span, coordinates, &found.coordinates);
     if !found.converged {
         for said in short_of(asked, skeleton, &found) {
             ctx.report(said);
