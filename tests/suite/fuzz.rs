@@ -346,6 +346,9 @@ const SHORT_FORM: u64 = 250;
 /// The longest that a mutation of a small scene may take, in a build without optimisation on a busy machine.
 const PATIENCE: Duration = Duration::from_secs(20);
 
+/// The most memory that the process may come to need, all tests in it together.
+const MEMORY_MIB: u64 = 1024;
+
 #[test]
 fn fuzz_mutated_examples_never_panic_or_hang() {
     fuzz(mutated);
@@ -373,6 +376,11 @@ fn fuzz(make: impl Fn(&[String], &mut Random) -> String) {
         let outcome = std::panic::catch_unwind(AssertUnwindSafe(|| exercise(&text)));
         assert!(outcome.is_ok(), "seed {seed} panics on:\n{text}");
         assert!(began.elapsed() < PATIENCE, "seed {seed} takes {:?} on:\n{text}", began.elapsed());
+        let peak = peak_memory_mib();
+        assert!(
+            peak.is_none_or(|mib| mib < MEMORY_MIB),
+            "by seed {seed} the process peaked at {peak:?} MiB, on:\n{text}"
+        );
         slowest = slowest.max((began.elapsed(), seed));
         seed += 1;
     }
@@ -383,7 +391,6 @@ fn fuzz(make: impl Fn(&[String], &mut Random) -> String) {
         seed - first
     );
     assert!(seed > first, "no mutation was tried");
-    assert!(peak.is_none_or(|mib| mib < 1024), "the process peaked at {peak:?} MiB");
 }
 
 #[test]

@@ -6,11 +6,15 @@
 //! in one place.
 
 use crate::geometry::mesh::Mesh;
+use crate::math::error::gamma;
 use glam::DVec3;
 use std::collections::{HashMap, HashSet};
 
 /// Halvings of an edge at most. A motion that tears never settles; 2⁻⁸ of an edge is as near as it is followed.
 const MOST_HALVINGS: usize = 8;
+
+/// A mesh of more triangles than this is halved no further: finer than a picture shows, and as much as memory should hold.
+const MOST_TRIANGLES: usize = 1 << 22;
 
 /// Where a motion takes points.
 pub type Images<'f, E> = dyn Fn(&[DVec3]) -> Result<Vec<DVec3>, E> + 'f;
@@ -23,7 +27,7 @@ pub fn refine<E>(mesh: &mut Mesh, tolerance: f64, images: &Images<'_, E>) -> Res
     // Each halving of an edge may come with one of the longest edge beside it.
     for _ in 0..2 * MOST_HALVINGS {
         let bent = bent(&places, &moved, &fresh, tolerance, images)?;
-        if bent.is_empty() {
+        if bent.is_empty() || mesh.triangles.len() > MOST_TRIANGLES {
             break;
         }
         let halved = with_longest(&places, &mesh.triangles, bent);
@@ -100,8 +104,16 @@ fn bent<E>(
     edges.retain(|edge| !places.middles.contains_key(edge));
     let middles: Vec<DVec3> = edges.iter().map(|edge| middle(&places.points, *edge)).collect();
     let images = images(&middles)?;
-    let straight = |(edge, image): &(Edge, DVec3)| image.distance(middle(moved, *edge)) <= tolerance;
+    let straight = |(edge, image): &(Edge, DVec3)| agree(*image, middle(moved, *edge), tolerance);
     Ok(edges.into_iter().zip(images).filter(|one| !straight(one)).map(|(edge, _)| edge).collect())
+}
+
+/// True for points within a tolerance of one another, or as near as their rounding lets one say; and where there is no
+/// place to compare.
+fn agree(a: DVec3, b: DVec3, tolerance: f64) -> bool {
+    let gap = a - b;
+    let rounding = (a.abs() + b.abs()).max_element() * gamma(64);
+    gap.length() <= tolerance || gap.abs().max_element() <= rounding || !gap.is_finite()
 }
 
 /// Those edges, with the longest edge of each triangle that has one of them, and of each that has one of those.

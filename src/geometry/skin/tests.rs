@@ -228,3 +228,15 @@ fn normals_follow_a_twist_that_changes_along_the_surface() {
     let still = |points: &[DVec3]| Ok::<_, ()>(points.to_vec());
     assert_eq!(bent_normals(&points, &bent, 3.0, &still).unwrap(), bent);
 }
+
+#[test]
+fn lengths_beyond_any_picture_do_not_refine_without_end() {
+    let far = 1e300;
+    let positions =
+        vec![DVec3::new(far / 3.0, 0.0, 0.0), DVec3::new(far, 0.0, 0.0), DVec3::new(far, 1.0, 0.0)];
+    let mut mesh = Mesh { positions, triangles: vec![[0, 1, 2]], ..Mesh::default() };
+    let turned =
+        |points: &[DVec3]| Ok::<_, ()>(points.iter().map(|p| DVec3::new(p.y, 1.1 * p.x, 0.0)).collect());
+    refine(&mut mesh, 1e-3, &turned).unwrap();
+    assert_eq!(mesh.triangles.len(), 1, "a motion that bends nothing");
+}
