@@ -13,7 +13,9 @@ pub trait Tracer: Sync {
 pub mod camera;
 pub mod compare;
 pub mod film;
+mod medium;
 pub mod output;
+pub mod path;
 pub mod sampler;
 pub mod settings;
 pub mod tiles;
@@ -28,6 +30,7 @@ pub fn tracer(
     match kind {
         TracerKind::Raycast => Some(Box::new(whitted::Whitted::raycast(world, settings))),
         TracerKind::Whitted => Some(Box::new(whitted::Whitted::new(world, settings))),
-        TracerKind::MonteCarlo | TracerKind::Path | TracerKind::Irradiance | TracerKind::Photon => None,
+        TracerKind::Path => Some(Box::new(path::Path::new(world, settings))),
+        TracerKind::MonteCarlo | TracerKind::Irradiance | TracerKind::Photon => None,
     }
 }

@@ -37,12 +37,14 @@ pub struct RayCounts {
     pub reflected: u64,
     /// Bent through a surface.
     pub refracted: u64,
+    /// Sent on by a lobe with a width.
+    pub scattered: u64,
 }
 
 impl RayCounts {
     /// All of them.
     pub fn total(self) -> u64 {
-        self.camera + self.shadow + self.reflected + self.refracted
+        self.camera + self.shadow + self.reflected + self.refracted + self.scattered
     }
 }
 
@@ -52,6 +54,7 @@ impl std::ops::AddAssign for RayCounts {
         self.shadow += other.shadow;
         self.reflected += other.reflected;
         self.refracted += other.refracted;
+        self.scattered += other.scattered;
     }
 }
 

@@ -68,7 +68,7 @@ impl ResolvedSettings {
     pub const SAMPLES: u32 = 4;
     /// Samples a pixel of tracers that follow indirect light.
     pub const SAMPLES_INDIRECT: u32 = 64;
-    /// Segments of a path.
+    /// Segments of a path of tracers that follow direct light only; the others end their paths by chance.
     pub const DEPTH: u32 = 8;
 
     /// The first of each setting that is given: by `overrides` (the command line), by the scene, by the defaults.
@@ -80,7 +80,7 @@ impl ResolvedSettings {
             crop: Crop::all(size),
             tracer,
             samples: overrides.samples.or(scene.samples).unwrap_or(default_samples(tracer)).max(1),
-            depth: overrides.depth.or(scene.depth).unwrap_or(Self::DEPTH).max(1),
+            depth: overrides.depth.or(scene.depth).unwrap_or(default_depth(tracer)).max(1),
             seed: overrides.seed.or(scene.seed).unwrap_or(0),
             accelerator: overrides.accelerator.or(scene.accelerator).unwrap_or_default(),
             exposure: overrides.exposure.or(scene.exposure).unwrap_or(0.0),
@@ -97,6 +97,13 @@ fn default_samples(tracer: TracerKind) -> u32 {
         TracerKind::MonteCarlo | TracerKind::Path | TracerKind::Irradiance | TracerKind::Photon => {
             ResolvedSettings::SAMPLES_INDIRECT
         }
+    }
+}
+
+fn default_depth(tracer: TracerKind) -> u32 {
+    match tracer {
+        TracerKind::Raycast | TracerKind::Whitted => ResolvedSettings::DEPTH,
+        TracerKind::MonteCarlo | TracerKind::Path | TracerKind::Irradiance | TracerKind::Photon => u32::MAX,
     }
 }
 

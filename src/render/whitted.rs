@@ -14,9 +14,9 @@
 mod local;
 
 use super::Tracer;
+use super::medium::{Inside, kept};
 use super::sampler::Sampler;
 use super::settings::ResolvedSettings;
-use crate::math::elementary::exp;
 use crate::scene::{Material, Rgb, Texture};
 use crate::world::bsdf::{Bsdf, Scattered};
 use crate::world::light::Lights;
@@ -154,7 +154,7 @@ impl Whitted {
             tasks.push(past);
             weight *= bsdf.opacity;
         }
-        let mut radiance = bsdf.ambient + emitted(world, &hit, bsdf);
+        let mut radiance = bsdf.ambient + bsdf.emitted(world, &hit);
         let last = self.second_rays && task.segment >= self.depth;
         if !last {
             radiance += self.local(world, &hit, bsdf, task.segment == 1, sampler)?;
@@ -180,63 +180,5 @@ impl Whitted {
         if let Some(mirrored) = bsdf.mirrored(u) {
             sampler.rays.reflected += u64::from(tasks.push(next(mirrored, from.inside)));
         }
-    }
-}
-
-/// Radiance that the surface sends out: on its normal's side, and inward too from a closed solid.
-fn emitted(world: &World, hit: &Hit<'_>, bsdf: &Bsdf) -> Rgb {
-    if bsdf.emit == Rgb::ZERO || bsdf.outside || world.emits_inward(hit.primitive) {
-        bsdf.emit
-    } else {
-        Rgb::ZERO
-    }
-}
-
-/// The media that a ray is inside of, innermost last: only as many as fit; more deeply nested ones count as the last.
-#[derive(Clone, Copy)]
-struct Inside {
-    absorb: [Rgb; 3],
-    n: usize,
-}
-
-impl Inside {
-    const NOTHING: Inside = Inside { absorb: [Rgb::ZERO; 3], n: 0 };
-
-    /// After passing a surface, into the medium or out of it.
-    fn across(mut self, bsdf: &Bsdf) -> Inside {
-        if !bsdf.outside {
-            self.n = self.n.saturating_sub(1);
-        } else if self.n < self.absorb.len() {
-            self.absorb[self.n] = bsdf.absorb;
-            self.n += 1;
-        }
-        self
-    }
-
-    /// What absorbs light on the way to a surface, if anything does: the innermost medium, or, for a ray that meets the surface from within
-    /// without having entered it, as the camera stands inside, that of the surface.
-    fn absorbing(&self, bsdf: &Bsdf) -> Option<Rgb> {
-        match self.n {
-            0 => (!bsdf.outside && bsdf.is_transmissive()).then_some(bsdf.absorb),
-            n => Some(self.absorb[n - 1]),
-        }
-    }
-
-    /// Share of light left after a length, by Beer's law. Infinite lengths leave nothing of what is absorbed at all.
-    fn kept(&self, length: f64) -> Rgb {
-        match self.n {
-            0 => Rgb::ONE,
-            n => kept(self.absorb[n - 1], length),
-        }
-    }
-}
-
-/// exp(−absorb · length), 1 where nothing is absorbed.
-fn kept(absorb: Rgb, length: f64) -> Rgb {
-    let channel = |a: f64| if a == 0.0 { 1.0 } else { exp(-a * length) };
-    if absorb == Rgb::ZERO {
-        Rgb::ONE
-    } else {
-        Rgb::new(channel(absorb.x), channel(absorb.y), channel(absorb.z))
     }
 }

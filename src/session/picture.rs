@@ -6,9 +6,9 @@ use crate::diag::{Code, Diagnostic};
 use crate::math::field::FaultKind;
 use crate::render::camera::View;
 use crate::render::film::{Fault, Film};
+use crate::render::path::Path;
 use crate::render::settings::{Crop, ResolvedSettings};
 use crate::render::tiles::{self, Picture, Progress};
-use crate::render::whitted::Whitted;
 use crate::render::{self, Tracer};
 use crate::scene::assets::{AssetCache, Loader};
 use crate::scene::{Camera, RenderSettings, Scene};
@@ -108,13 +108,13 @@ fn choose<'a>(scene: &'a Scene, label: Option<&str>) -> Result<Option<&'a Camera
     })
 }
 
-/// The tracer of the settings; Whitted's takes the place of one that is not built yet, so that there is a picture.
+/// The tracer of the settings; the path tracer takes the place of one that is not built yet, so that there is a picture.
 fn tracer(world: &World, settings: &ResolvedSettings, found: &mut Vec<Diagnostic>) -> Box<dyn Tracer> {
     render::tracer(settings.tracer, world, settings).unwrap_or_else(|| {
         let word = super::inspect::tracer_word(settings.tracer);
-        let message = format!("the tracer `{word}` is not built yet; `whitted` takes its place");
+        let message = format!("the tracer `{word}` is not built yet; `path` takes its place");
         found.push(Diagnostic::new(Code::NotBuilt, None, message));
-        Box::new(Whitted::new(world, settings))
+        Box::new(Path::new(world, settings))
     })
 }
 

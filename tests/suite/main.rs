@@ -13,6 +13,7 @@ mod language;
 mod layers;
 mod meshes;
 mod models;
+mod paths;
 mod pictures;
 mod planted;
 mod radiometry;

@@ -238,8 +238,8 @@ fn tracer(ctx: &mut dyn Context, block: &Block) -> Option<TracerKind> {
         "irradiance" => TracerKind::Irradiance,
         _ => TracerKind::Photon,
     };
-    if !matches!(kind, TracerKind::Raycast | TracerKind::Whitted) {
-        not_built(ctx, block, "tracer", "whitted");
+    if matches!(kind, TracerKind::MonteCarlo | TracerKind::Irradiance | TracerKind::Photon) {
+        not_built(ctx, block, "tracer", "path");
     }
     Some(kind)
 }

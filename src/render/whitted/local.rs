@@ -1,6 +1,7 @@
 //! Light that comes to a hit straight from the lights, and what stands in its way.
 
-use super::{Whitted, kept};
+use super::Whitted;
+use crate::render::medium::kept;
 use crate::render::sampler::Sampler;
 use crate::scene::Rgb;
 use crate::world::bsdf::Bsdf;

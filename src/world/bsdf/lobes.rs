@@ -17,6 +17,31 @@ pub fn specular(lobe: Lobe, q: f64, n: DVec3, wo: DVec3, wi: DVec3) -> f64 {
     if cosine > 0.0 { norm * power(cosine.min(1.0), q) } else { 0.0 }
 }
 
+/// A direction chosen by u in (0, 1)² in proportion to cos^q: of the angle to the mirror image of `wo` (Phong), or of that
+/// between n and the half vector (Blinn). It may lie below the surface.
+pub fn choose_specular(lobe: Lobe, q: f64, n: DVec3, wo: DVec3, u: DVec2) -> DVec3 {
+    let cosine = powf(u.x, 1.0 / (q + 1.0));
+    let sine = ((1.0 - cosine) * (1.0 + cosine)).max(0.0).sqrt();
+    let (s, c) = sin_cos(TAU * u.y);
+    let local = DVec3::new(sine * c, sine * s, cosine);
+    match lobe {
+        Lobe::Phong => to_frame(super::fresnel::reflect(wo, n), local),
+        Lobe::Blinn => super::fresnel::reflect(wo, to_frame(n, local)),
+    }
+}
+
+/// Density per solid angle of [`choose_specular`].
+pub fn specular_density(lobe: Lobe, q: f64, n: DVec3, wo: DVec3, wi: DVec3) -> f64 {
+    let (cosine, spread) = match lobe {
+        Lobe::Phong => (super::fresnel::reflect(wo, n).dot(wi), 1.0),
+        Lobe::Blinn => {
+            let half = (wo + wi).normalize_or_zero();
+            (n.dot(half), 4.0 * wo.dot(half))
+        }
+    };
+    if cosine > 0.0 && spread > 0.0 { (q + 1.0) / TAU * power(cosine.min(1.0), q) / spread } else { 0.0 }
+}
+
 /// Exponents above this are no longer taken for whole numbers; nobody writes them.
 const MOST_WHOLE: f64 = 65536.0;
 
@@ -72,6 +97,35 @@ impl Ggx {
         let (sin, cos) = sin_cos(TAU * u.x);
         let h = DVec3::new(r * cos, r * sin, z) + stretched;
         to_frame(self.n, DVec3::new(self.alpha * h.x, self.alpha * h.y, h.z.max(0.0)).normalize_or(DVec3::Z))
+    }
+
+    /// Density per solid angle with which a visible facet mirrors `wo` to `wi`.
+    pub fn mirrored_density(self, wo: DVec3, wi: DVec3) -> f64 {
+        let (co, ci) = (wo.dot(self.n), wi.dot(self.n));
+        let h = (wo + wi).normalize_or_zero();
+        if !(co > 0.0 && ci > 0.0) || h == DVec3::ZERO {
+            return 0.0;
+        }
+        self.density(h) / (4.0 * co * (1.0 + self.lambda(co)))
+    }
+
+    /// The normal of the facet that bends `wo` to `wi` beyond it, for an index η ≠ 1 of the far side over the near one.
+    pub fn bending(self, wo: DVec3, wi: DVec3, eta: f64) -> DVec3 {
+        let h = (wo + wi * eta).normalize_or_zero();
+        if h.dot(self.n) < 0.0 { -h } else { h }
+    }
+
+    /// Density per solid angle with which a visible facet bends `wo` to `wi`. 0 where none can.
+    pub fn bent_density(self, wo: DVec3, wi: DVec3, eta: f64) -> f64 {
+        let h = self.bending(wo, wi, eta);
+        let (near, far) = (wo.dot(h), wi.dot(h));
+        let co = wo.dot(self.n);
+        if !(co > 0.0 && near > 0.0 && far < 0.0) {
+            return 0.0;
+        }
+        let spread = near + eta * far;
+        let seen = self.density(h) * near / (co * (1.0 + self.lambda(co)));
+        seen * (eta * eta * -far) / (spread * spread)
     }
 
     /// What a ray mirrored or bent by a visible facet still carries: G₂/G₁, given the cosines of the two directions.

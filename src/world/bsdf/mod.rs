@@ -7,6 +7,7 @@
 pub mod fresnel;
 pub mod lobes;
 mod normal;
+mod scatter;
 
 use super::hit::Hit;
 use super::texture::{self, Sampled, TexturePoint};
@@ -15,6 +16,7 @@ use crate::scene::{Fresnel, Lobe, Material, Rgb};
 use fresnel::{reflect, refract};
 use glam::{DVec2, DVec3};
 use lobes::Ggx;
+pub use scatter::Bounce;
 use std::f64::consts::PI;
 
 /// A material at a hit, seen along `wo`.
@@ -149,6 +151,15 @@ impl Bsdf {
             self.normal = normal::facing(n * side, self.geometric, self.wo);
         }
         Ok(())
+    }
+
+    /// Radiance that the surface sends out to `wo`: on its normal's side, and inward too from a closed solid.
+    pub fn emitted(&self, world: &World, hit: &Hit<'_>) -> Rgb {
+        if self.emit == Rgb::ZERO || self.outside || world.emits_inward(hit.primitive) {
+            self.emit
+        } else {
+            Rgb::ZERO
+        }
     }
 
     /// True where light that comes from somewhere in particular is sent on: where lights need to be asked at all.

@@ -4,13 +4,15 @@
 //! The estimate is always the product of visibility, geometry and radiance, sample by sample: a tracer multiplies
 //! [`LightSample::weight`] by BSDF, cosine and visibility and averages.
 
+mod choice;
 mod pieces;
 mod surface;
 
 use super::hit::{Hit, SurfacePoint};
-use super::{Emitter, PlacedLight, Ray, RayKind, World};
+use super::{Emitter, PlacedLight, PrimitiveId, Ray, RayKind, World};
 use crate::math::elementary::{sin_cos, sin_cos_degrees};
 use crate::scene::{LightSource, Rgb, Sky};
+pub use choice::Choice;
 use glam::{DVec2, DVec3};
 use std::f64::consts::{PI, TAU};
 pub use surface::{AreaLight, emits_inward};
@@ -22,6 +24,8 @@ pub struct Lights {
     pub lights: Vec<Light>,
     /// Radiance of all skies together; none where there is no sky.
     sky: Option<Rgb>,
+    /// The light of each emitter of the world, by its index there.
+    of_emitter: Vec<Option<usize>>,
 }
 
 /// One light.
@@ -87,7 +91,6 @@ impl Lights {
     /// The lights of a world.
     pub fn new(world: &World) -> Lights {
         let placed = world.lights.iter().filter_map(Light::placed);
-        let emitting = world.emitters.iter().filter_map(Light::emitter);
         let skies = world.lights.iter().filter_map(|placed| match &placed.light.source {
             LightSource::Sky(Sky::Uniform(radiance)) => Some(*radiance),
             LightSource::Sky(Sky::Image { .. })
@@ -96,7 +99,20 @@ impl Lights {
             | LightSource::Sun { .. }
             | LightSource::Area { .. } => None,
         });
-        Lights { lights: placed.chain(emitting).collect(), sky: skies.reduce(|a, b| a + b) }
+        let mut lights: Vec<Light> = placed.collect();
+        let add = |emitter| {
+            Light::emitter(emitter).map(|light| {
+                lights.push(light);
+                lights.len() - 1
+            })
+        };
+        let of_emitter = world.emitters.iter().map(add).collect();
+        Lights { lights, sky: skies.reduce(|a, b| a + b), of_emitter }
+    }
+
+    /// The light that a primitive is part of, by its index; none where it does not emit or is not asked.
+    pub fn of(&self, world: &World, primitive: PrimitiveId) -> Option<usize> {
+        self.of_emitter[world.emitter_of(primitive)?]
     }
 
     /// Radiance of the sky in a direction; none where there is no sky.
@@ -172,9 +188,33 @@ impl Light {
             Source::Sky { radiance } => Some(from_sky(*radiance, normal, u)),
             Source::Area(area) => {
                 let (mut sample, distance) = area.sample(at, normal, u)?;
-                sample.weight *= self.falloff.map_or(1.0, |f| distance * distance * attenuation(f, distance));
+                sample.weight *= self.dimming(distance);
                 Some(sample)
             }
+        }
+    }
+
+    /// Density per solid angle with which [`Light::sample`] chooses the direction `wi` from a point, given where a ray that way
+    /// met the light (the sky: nothing). None where chance does not find what the light sends, so that only samples count.
+    pub fn density(&self, at: DVec3, normal: DVec3, wi: DVec3, met: Option<&SurfacePoint>) -> Option<f64> {
+        match (&self.source, met) {
+            _ if !self.shadow => None,
+            (Source::Sky { .. }, None) => Some(wi.dot(normal).max(0.0) / PI),
+            (Source::Area(area), Some(met)) => area.density(at, normal, wi, met),
+            _ => None,
+        }
+    }
+
+    /// What a falloff makes of radiance that comes from a distance.
+    pub fn dimming(&self, distance: f64) -> f64 {
+        self.falloff.map_or(1.0, |f| distance * distance * attenuation(f, distance))
+    }
+
+    /// The radiance of a sky; none of other lights.
+    pub fn as_sky(&self) -> Option<Rgb> {
+        match self.source {
+            Source::Sky { radiance } => Some(radiance),
+            Source::Point { .. } | Source::Spot { .. } | Source::Sun { .. } | Source::Area(_) => None,
         }
     }
 

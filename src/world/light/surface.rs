@@ -28,8 +28,8 @@ pub struct AreaLight {
 enum Form {
     /// A sphere that is one in the world.
     Sphere { center: DVec3, radius: f64 },
-    /// Pieces, the sums of their weights up to each (the last is the total), and how to tell inside from outside.
-    Pieces { pieces: Vec<Piece>, sums: Vec<f64>, solid: Option<Solid> },
+    /// Pieces, the sums of their weights up to each (the last is the total), whether all are flat, and how to tell inside from outside.
+    Pieces { pieces: Vec<Piece>, sums: Vec<f64>, flat: bool, solid: Option<Solid> },
 }
 
 /// A closed surface, by its inside in its own space.
@@ -57,11 +57,43 @@ impl AreaLight {
     pub(super) fn sample(&self, at: DVec3, normal: DVec3, u: DVec2) -> Option<(LightSample, f64)> {
         match &self.form {
             Form::Sphere { center, radius } => self.by_sphere(at, normal, *center, *radius, u),
-            Form::Pieces { pieces, sums, solid } => {
+            Form::Pieces { pieces, sums, solid, .. } => {
                 let (piece, share, u) = choose(pieces, sums, u);
                 let inside = solid.as_ref().is_some_and(|s| s.contains(self.local_from_world.point(at)));
                 self.by_piece(at, piece.point(u), share, inside)
             }
+        }
+    }
+
+    /// Density per solid angle of [`AreaLight::sample`] toward a point of the surface. None for curved pieces, whose
+    /// density at a point is not known.
+    pub(super) fn density(&self, at: DVec3, normal: DVec3, wi: DVec3, met: &SurfacePoint) -> Option<f64> {
+        match &self.form {
+            Form::Sphere { center, radius } => Some(match side(*center, *radius, at, normal) {
+                Side::Outside(sin2) => 1.0 / (TAU * gap(sin2)),
+                Side::Inside => wi.dot(normal).max(0.0) / PI,
+                Side::Itself => 0.0,
+            }),
+            Form::Pieces { sums, flat, .. } => {
+                let cosine = wi.dot(met.normal).abs();
+                flat.then(|| (met.point - at).length_squared() / (cosine * sums[sums.len() - 1]))
+            }
+        }
+    }
+
+    /// Its area, roughly where it is curved.
+    pub(super) fn area(&self) -> f64 {
+        match &self.form {
+            Form::Sphere { radius, .. } => 4.0 * PI * radius * radius,
+            Form::Pieces { sums, .. } => sums[sums.len() - 1],
+        }
+    }
+
+    /// Its radiance; white for a pattern.
+    pub(super) fn typical(&self) -> Rgb {
+        match &self.emission {
+            Texture::Constant(radiance) => *radiance,
+            Texture::Pattern(_) => Rgb::ONE,
         }
     }
 
@@ -100,9 +132,9 @@ impl AreaLight {
     ) -> Option<(LightSample, f64)> {
         let to = center - at;
         let squared = to.length_squared();
-        let sin2 = radius * radius / squared;
-        let (wi, pdf, distance) = if sin2 < 1.0 {
-            let gap = sin2 / (1.0 + (1.0 - sin2).sqrt()); // 1 − cos of the angle that the sphere fills
+        let side = side(center, radius, at, normal);
+        let (wi, pdf, distance) = if let Side::Outside(sin2) = side {
+            let gap = gap(sin2);
             let x = gap * u.x; // 1 − cos of the angle from the axis
             let (s, c) = sin_cos(TAU * u.y);
             let sine2 = x * (2.0 - x);
@@ -111,6 +143,8 @@ impl AreaLight {
             let wi = to_frame(to / away, DVec3::new(r * c, r * s, 1.0 - x));
             let half_chord = (radius * radius - squared * sine2).max(0.0).sqrt();
             (wi, 1.0 / (TAU * gap), away * (1.0 - x) - half_chord)
+        } else if side == Side::Itself {
+            return None;
         } else {
             let local = cosine_hemisphere(u);
             let wi = to_frame(normal, local);
@@ -137,6 +171,35 @@ impl AreaLight {
             }
         }
     }
+}
+
+/// Where a point lies that a sphere shines on.
+#[derive(Clone, Copy, PartialEq)]
+enum Side {
+    /// Outside, with the squared sine of the angle that the sphere fills.
+    Outside(f64),
+    Inside,
+    /// On the sphere, facing away from it.
+    Itself,
+}
+
+/// Of a point on the sphere's own surface rounding would say now this, now that: its normal knows.
+fn side(center: DVec3, radius: f64, at: DVec3, normal: DVec3) -> Side {
+    let to = center - at;
+    let squared = to.length_squared();
+    let rounding = (center.length() + radius) * gamma(32);
+    if (squared - radius * radius).abs() <= 2.0 * radius * rounding {
+        if to.dot(normal) > 0.0 { Side::Inside } else { Side::Itself }
+    } else if squared > radius * radius {
+        Side::Outside(radius * radius / squared)
+    } else {
+        Side::Inside
+    }
+}
+
+/// 1 − cos of the angle that a sphere fills, from the squared sine: no digit is lost however small it is.
+fn gap(sin2: f64) -> f64 {
+    sin2 / (1.0 + (1.0 - sin2).sqrt())
 }
 
 /// The piece that u.x falls on, the share of the choice it has, and u with the digits that the choice left.
@@ -182,7 +245,8 @@ fn form_of(emitter: &Emitter) -> Option<Form> {
             })
         })
         .unzip();
-    (!pieces.is_empty()).then_some(Form::Pieces { pieces, sums, solid })
+    let flat = !pieces.iter().any(|piece| matches!(piece, Piece::Curved { .. }));
+    (!pieces.is_empty()).then_some(Form::Pieces { pieces, sums, flat, solid })
 }
 
 /// The factor of a map that keeps angles; none for one that does not. Scales and rotations composed keep the columns' lengths

@@ -114,6 +114,7 @@ pub fn json(
             "shadow": rays.shadow,
             "reflected": rays.reflected,
             "refracted": rays.refracted,
+            "scattered": rays.scattered,
             "total": rays.total(),
         },
         "world": prepared.world.stats(),

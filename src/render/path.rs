@@ -1,0 +1,251 @@
+//! Path tracing (Kajiya, *The Rendering Equation*, 1986): one path from the camera for each sample, which goes on wherever
+//! light may have come from, and at every surface asks one light directly.
+//!
+//! What a light sends is found in two ways, by asking it and by meeting it; each counts by its share of the two densities
+//! (the balance heuristic of Veach & Guibas, 1995), so that neither is counted twice. Lights without extent are only asked;
+//! smooth mirrors and glass only meet. From the fifth segment on, a path that carries little ends by chance and the others
+//! count for more. With the default depth the picture has no bias; a `depth` leaves out what longer paths would bring.
+//!
+//! Glass casts a shadow here, and what it gathers is found by the paths that meet a light through it: light from `point`,
+//! `spot` and `sun` through smooth glass cannot be found so, and is missing.
+
+use super::Tracer;
+use super::medium::{Inside, kept};
+use super::sampler::Sampler;
+use super::settings::ResolvedSettings;
+use crate::scene::{Material, Rgb, Texture};
+use crate::world::bsdf::{Bounce, Bsdf};
+use crate::world::light::{Choice, LightEnd, Lights};
+use crate::world::texture::Sampled;
+use crate::world::{Hit, Ray, RayKind, World};
+use glam::DVec3;
+use std::cell::Cell;
+
+/// The tracer `path`.
+pub struct Path {
+    lights: Lights,
+    choice: Choice,
+    depth: u32,
+    background: Option<Rgb>,
+    /// True where some surface is there only in part.
+    has_holes: bool,
+}
+
+/// Paths end by chance from this segment on.
+const FIRST_ROULETTE: u32 = 5;
+
+/// A path that loses nothing would go on for ever between perfect mirrors: after [`LONG`] segments one in 64 ends.
+const MOST_SURVIVAL: f64 = 1.0 - 1.0 / 64.0;
+const LONG: u32 = 256;
+
+/// The surface that the last segment came from, and how likely its direction was.
+#[derive(Clone, Copy)]
+struct Last {
+    point: DVec3,
+    normal: DVec3,
+    density: f64,
+}
+
+/// A path under way.
+struct Walk<'a> {
+    ray: Ray,
+    /// What radiance from here on is multiplied by in the sample.
+    weight: Rgb,
+    /// Segments from the camera, this one counted.
+    segment: u32,
+    inside: Inside,
+    /// None after the camera and after what is smooth: nothing but this ray could have met what it meets.
+    last: Option<Last>,
+    /// True while the camera sees along it, by mirrors and glass.
+    seen: bool,
+    sum: Rgb,
+    sampler: &'a mut Sampler,
+}
+
+impl Path {
+    /// Paths in a world, by these settings.
+    pub fn new(world: &World, settings: &ResolvedSettings) -> Path {
+        let lights = Lights::new(world);
+        let bounds = world.bounds();
+        let radius = (bounds.max - bounds.min).length() / 2.0;
+        let choice = Choice::new(&lights.lights, if radius.is_finite() { radius } else { 0.0 });
+        let opaque = |m: &Material| {
+            let is_one = |o: &Texture| matches!(o, Texture::Constant(c) if *c == Rgb::ONE);
+            m.layers.as_deref().is_none_or(|layers| is_one(&layers.opacity))
+        };
+        let has_holes = !world.materials().iter().all(|m| opaque(m));
+        Path { lights, choice, depth: settings.depth, background: settings.background, has_holes }
+    }
+}
+
+impl Tracer for Path {
+    fn radiance(&self, world: &World, ray: Ray, sampler: &mut Sampler) -> Rgb {
+        sampler.rays.camera += 1;
+        let (weight, inside) = (Rgb::ONE, Inside::NOTHING);
+        let mut walk =
+            Walk { ray, weight, segment: 1, inside, last: None, seen: true, sum: Rgb::ZERO, sampler };
+        loop {
+            match self.follow(world, &mut walk) {
+                Ok(true) => {}
+                Ok(false) => return walk.sum,
+                Err(fault) => {
+                    walk.sampler.undefined = Some(fault);
+                    return walk.sum;
+                }
+            }
+        }
+    }
+}
+
+impl Path {
+    /// Takes a path to the end of its ray and aims it anew. False where it ends.
+    fn follow(&self, world: &World, walk: &mut Walk<'_>) -> Sampled<bool> {
+        let Some(hit) = world.closest(&walk.ray) else {
+            walk.sum += walk.weight * walk.inside.kept(f64::INFINITY) * self.beyond(walk);
+            return Ok(false);
+        };
+        let bsdf = Bsdf::at(world, &hit, &walk.ray)?;
+        if let Some(absorb) = walk.inside.absorbing(&bsdf) {
+            walk.weight *= kept(absorb, hit.t);
+        }
+        if bsdf.opacity < 1.0 && walk.sampler.next_1d() >= bsdf.opacity {
+            walk.ray = hit.spawn(walk.ray.direction, walk.ray.kind);
+            return Ok(true);
+        }
+        let emitted = bsdf.emitted(world, &hit);
+        if emitted != Rgb::ZERO {
+            walk.sum += walk.weight * emitted * self.share_of_meeting(world, &hit, walk);
+        }
+        if walk.segment >= self.depth {
+            return Ok(false);
+        }
+        self.go_on(world, &hit, &bsdf, walk)
+    }
+
+    /// Asks a light and leaves the surface.
+    fn go_on(&self, world: &World, hit: &Hit<'_>, bsdf: &Bsdf, walk: &mut Walk<'_>) -> Sampled<bool> {
+        let which = walk.sampler.next_2d();
+        if bsdf.has_lobes() {
+            walk.sum += walk.weight * self.asked(world, hit, bsdf, which.y, walk.sampler)?;
+        }
+        let Some(bounce) = bsdf.bounce(which.x, walk.sampler.next_2d()) else { return Ok(false) };
+        walk.count(&bounce);
+        if bounce.through {
+            walk.inside = walk.inside.across(bsdf);
+        }
+        walk.weight *= bounce.weight;
+        walk.ray = hit.spawn(bounce.direction, RayKind::Indirect);
+        walk.last = bounce.density.map(|density| Last { point: hit.point, normal: bsdf.normal, density });
+        walk.seen &= walk.last.is_none();
+        walk.segment += 1;
+        Ok(walk.segment < FIRST_ROULETTE || walk.survives())
+    }
+
+    /// What the surface sends on of the light that one of the lights, asked directly, sends it.
+    fn asked(
+        &self,
+        world: &World,
+        hit: &Hit<'_>,
+        bsdf: &Bsdf,
+        which: f64,
+        sampler: &mut Sampler,
+    ) -> Sampled<Rgb> {
+        let Some((i, odds)) = self.choice.pick(which) else { return Ok(Rgb::ZERO) };
+        let light = &self.lights.lights[i];
+        let Some(sample) = light.sample(hit.point, bsdf.normal, sampler.next_2d()) else {
+            return Ok(Rgb::ZERO);
+        };
+        let sent = bsdf.sent(sample.wi) * sample.weight / odds;
+        if sent == Rgb::ZERO {
+            return Ok(sent);
+        }
+        let met = match &sample.end {
+            LightEnd::Surface(point) => Some(point),
+            LightEnd::Point(_) | LightEnd::Infinity => None,
+        };
+        let share = match light.density(hit.point, bsdf.normal, sample.wi, met) {
+            Some(density) => balance(density * odds, bsdf.density(sample.wi)),
+            None => 1.0,
+        };
+        if !light.shadow {
+            return Ok(sent * share);
+        }
+        Ok(sent * share * self.passed(world, &sample.shadow_ray(hit), sampler)?)
+    }
+
+    /// The share of light that passes along a shadow ray: all, nothing, or what holes let by.
+    fn passed(&self, world: &World, ray: &Ray, sampler: &mut Sampler) -> Sampled<f64> {
+        sampler.rays.shadow += 1;
+        if !self.has_holes {
+            return Ok(if world.occluded(ray) { 0.0 } else { 1.0 });
+        }
+        let fault = Cell::new(None);
+        let left = world.transmittance(ray, |hit| match Bsdf::at(world, hit, ray) {
+            Ok(bsdf) => Rgb::splat(1.0 - bsdf.opacity),
+            Err(e) => {
+                fault.set(Some(e));
+                Rgb::ZERO
+            }
+        });
+        fault.take().map_or(Ok(left.x), Err)
+    }
+
+    /// How much of a surface's emission counts that a ray met: its share beside what asking the light gives.
+    fn share_of_meeting(&self, world: &World, hit: &Hit<'_>, walk: &Walk<'_>) -> f64 {
+        let Some(last) = &walk.last else { return 1.0 };
+        let Some(i) = self.lights.of(world, hit.primitive) else { return 1.0 };
+        let light = &self.lights.lights[i];
+        let met = hit.surface_point();
+        match light.density(last.point, last.normal, walk.ray.direction, Some(&met)) {
+            Some(density) => {
+                balance(last.density, density * self.choice.share(i))
+                    * light.dimming((hit.point - last.point).length())
+            }
+            None => 0.0,
+        }
+    }
+
+    /// Radiance from where nothing is, less what asking the skies already gave.
+    fn beyond(&self, walk: &Walk<'_>) -> Rgb {
+        let direction = walk.ray.direction;
+        let Some(last) = &walk.last else {
+            let background = if walk.seen { self.background } else { None };
+            return background.or_else(|| self.lights.sky(direction)).unwrap_or(Rgb::ZERO);
+        };
+        let skies = self.lights.lights.iter().enumerate();
+        let met = skies.filter_map(|(i, light)| {
+            let share = match light.density(last.point, last.normal, direction, None) {
+                Some(density) => balance(last.density, density * self.choice.share(i)),
+                None => 0.0,
+            };
+            light.as_sky().map(|radiance| radiance * share)
+        });
+        met.sum()
+    }
+}
+
+/// The share of the first of two ways that find the same light with these densities.
+fn balance(this: f64, other: f64) -> f64 {
+    if this > 0.0 { this / (this + other) } else { 0.0 }
+}
+
+impl Walk<'_> {
+    /// Ends by chance where little is carried; what goes on counts for those that ended.
+    fn survives(&mut self) -> bool {
+        let most = if self.segment < LONG { 1.0 } else { MOST_SURVIVAL };
+        let survival = self.weight.max_element().min(most);
+        let goes_on = self.sampler.next_1d() < survival;
+        self.weight /= survival;
+        goes_on
+    }
+
+    fn count(&mut self, bounce: &Bounce) {
+        let rays = &mut self.sampler.rays;
+        let counter = match (bounce.density, bounce.through) {
+            (Some(_), _) => &mut rays.scattered,
+            (None, true) => &mut rays.refracted,
+            (None, false) => &mut rays.reflected,
+        };
+        *counter += 1;
+    }
+}

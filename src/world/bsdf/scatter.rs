@@ -1,0 +1,258 @@
+//! Chance at a surface: a direction chosen about as often as light is sent on from there, how often that is, and all that
+//! is sent on. Smooth mirrors and smooth boundaries have one direction each and no density; everything else is a lobe.
+//!
+//! A direction from any lobe is weighed by all lobes together (Veach & Guibas, *Optimally Combining Sampling Techniques*,
+//! 1995, §3.4), so that a lobe that was chosen seldom cannot make a sample large.
+
+use super::fresnel::{reflect, refract};
+use super::{Bsdf, Mirror, lobes};
+use crate::scene::Rgb;
+use crate::world::light::{cosine_hemisphere, to_frame};
+use glam::{DVec2, DVec3};
+use std::f64::consts::PI;
+
+/// Where a path goes on from a surface.
+#[derive(Clone, Copy, Debug)]
+pub struct Bounce {
+    /// Unit vector away from the surface.
+    pub direction: DVec3,
+    /// Radiance from there times this, on average over the choice, is what the surface sends to `wo`.
+    pub weight: Rgb,
+    /// Density of the choice per solid angle; none where chance cannot find the direction again.
+    pub density: Option<f64>,
+    /// True where the path goes through the surface.
+    pub through: bool,
+}
+
+/// A rough boundary mirrors and lets through at least so often each, whatever its share seen as a whole: facets differ.
+const LEAST_ODDS: f64 = 0.125;
+
+/// How often each way of going on is chosen. They sum to 1, or all are 0.
+#[derive(Clone, Copy)]
+struct Odds {
+    diffuse: f64,
+    specular: f64,
+    mirror: f64,
+    through: f64,
+}
+
+impl Bsdf {
+    /// True where light is sent on from more directions than one: where lights need to be asked.
+    #[inline]
+    pub fn has_lobes(&self) -> bool {
+        self.has_base() || self.is_glossy() || self.is_frosted()
+    }
+
+    /// All that is sent to `wo` of the irradiance from `wi`, per steradian, smooth mirrors and boundaries left out.
+    pub fn sent(&self, wi: DVec3) -> Rgb {
+        if wi.dot(self.geometric) > 0.0 { self.base(wi) + self.gloss(wi) } else { self.frosted(wi) }
+    }
+
+    /// Density per solid angle with which [`Bsdf::bounce`] goes on along `wi`, smooth mirrors and boundaries left out.
+    pub fn density(&self, wi: DVec3) -> f64 {
+        self.density_by(self.odds(), wi)
+    }
+
+    /// A way on: which lobe by `choice` in (0, 1), where in it by u in (0, 1)². None where nothing is sent on from there.
+    pub fn bounce(&self, choice: f64, u: DVec2) -> Option<Bounce> {
+        let odds = self.odds();
+        let Odds { diffuse, specular, mirror, .. } = odds;
+        let direction = if choice < diffuse {
+            to_frame(self.normal, cosine_hemisphere(u))
+        } else if choice < diffuse + specular {
+            lobes::choose_specular(self.lobe, self.exponent, self.normal, self.wo, u)
+        } else if choice < diffuse + specular + mirror {
+            match self.is_glossy() {
+                true => reflect(self.wo, self.ggx().visible_normal(self.wo, u)),
+                false => return self.smooth(self.mirrored(u)?, odds.mirror, false),
+            }
+        } else if odds.through > 0.0 {
+            match self.is_frosted() {
+                true => refract(self.wo, self.ggx().visible_normal(self.wo, u), self.eta())?,
+                false => return self.smooth(self.transmitted(u)?, odds.through, true),
+            }
+        } else {
+            return None;
+        };
+        // A lobe has no density on the other side, though it may point there; the lobe of that side is not this one.
+        if (direction.dot(self.normal) > 0.0) != (choice < diffuse + specular + mirror) {
+            return None;
+        }
+        let density = self.density_by(odds, direction);
+        let weight = self.sent(direction) / density;
+        let through = direction.dot(self.geometric) < 0.0;
+        let useful = density > 0.0 && weight.is_finite() && weight != Rgb::ZERO;
+        useful.then_some(Bounce { direction, weight, density: Some(density), through })
+    }
+
+    fn smooth(&self, way: super::Scattered, odds: f64, through: bool) -> Option<Bounce> {
+        Some(Bounce { direction: way.direction, weight: way.weight / odds, density: None, through })
+    }
+
+    /// By what each would send on if light came evenly from everywhere.
+    fn odds(&self) -> Odds {
+        let share = match self.mirror {
+            Mirror::None => Rgb::ZERO,
+            _ => self.mirror_share(self.wo.dot(self.normal)),
+        };
+        // Beyond the critical angle of the whole surface some of its facets still let light through.
+        let share = match self.is_frosted() {
+            true => share.clamp(Rgb::splat(LEAST_ODDS), Rgb::splat(1.0 - LEAST_ODDS)),
+            false => share,
+        };
+        let rest = Rgb::ONE - share;
+        let mean = |c: Rgb| c.element_sum() / 3.0;
+        let [d, s, m, t] =
+            [mean(rest * self.diffuse), mean(rest * self.specular), mean(share), mean(rest * self.transmit)];
+        let sum = d + s + m + t;
+        let of = |part: f64| if sum > 0.0 { part / sum } else { 0.0 };
+        Odds { diffuse: of(d), specular: of(s), mirror: of(m), through: of(t) }
+    }
+
+    fn density_by(&self, odds: Odds, wi: DVec3) -> f64 {
+        let cosine = wi.dot(self.normal);
+        if cosine <= 0.0 {
+            return if odds.through > 0.0 { odds.through * self.frosted_density(wi) } else { 0.0 };
+        }
+        let mut density = odds.diffuse * cosine / PI;
+        if odds.specular > 0.0 {
+            density +=
+                odds.specular * lobes::specular_density(self.lobe, self.exponent, self.normal, self.wo, wi);
+        }
+        if odds.mirror > 0.0 && self.is_glossy() {
+            density += odds.mirror * self.ggx().mirrored_density(self.wo, wi);
+        }
+        density
+    }
+
+    /// True where light goes through a rough boundary, which spreads it. One that does not bend does not spread either.
+    fn is_frosted(&self) -> bool {
+        self.is_transmissive() && self.roughness > 0.0 && self.ior != 1.0
+    }
+
+    /// What is sent through a rough boundary, times the cosine (Walter et al., *Microfacet Models for Refraction through Rough
+    /// Surfaces*, 2007). As everywhere here, radiance is not scaled by the squared index: it is once it leaves again.
+    fn frosted(&self, wi: DVec3) -> Rgb {
+        let density = self.frosted_density(wi);
+        if density <= 0.0 {
+            return Rgb::ZERO;
+        }
+        let ggx = self.ggx();
+        let facet = ggx.bending(self.wo, wi, self.eta());
+        let rest = Rgb::ONE - self.mirror_share(self.wo.dot(facet));
+        let carried = ggx.carried(self.wo.dot(self.normal), -wi.dot(self.normal));
+        self.transmit * rest * (carried * density)
+    }
+
+    fn frosted_density(&self, wi: DVec3) -> f64 {
+        let beyond = wi.dot(self.geometric) < 0.0 && wi.dot(self.normal) < 0.0;
+        if beyond && self.is_frosted() { self.ggx().bent_density(self.wo, wi, self.eta()) } else { 0.0 }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::{Fresnel, Lobe};
+    use std::f64::consts::TAU;
+
+    fn seen_at(cosine: f64) -> Bsdf {
+        Bsdf { wo: DVec3::new((1.0 - cosine * cosine).sqrt(), 0.0, cosine), ..Bsdf::BARE }
+    }
+
+    fn materials(cosine: f64) -> Vec<(&'static str, Bsdf)> {
+        let bare = || seen_at(cosine);
+        let grey = Rgb::splat(0.5);
+        let glass = |outside| Bsdf {
+            transmit: Rgb::ONE,
+            ior: 1.5,
+            roughness: 0.3,
+            outside,
+            mirror: Mirror::Boundary(Rgb::ZERO, Fresnel::Exact),
+            ..bare()
+        };
+        let glossy = |lobe| Bsdf { diffuse: grey, specular: grey, exponent: 12.0, lobe, ..bare() };
+        vec![
+            ("diffuse", Bsdf { diffuse: grey, ..bare() }),
+            ("phong", glossy(Lobe::Phong)),
+            ("blinn", glossy(Lobe::Blinn)),
+            ("metal", Bsdf { mirror: Mirror::Schlick(grey), roughness: 0.4, ..bare() }),
+            ("coated", Bsdf { diffuse: grey, mirror: Mirror::Constant(grey), roughness: 0.2, ..bare() }),
+            ("frosted", glass(true)),
+            ("frosted from within", glass(false)),
+        ]
+    }
+
+    fn grid(n: u32) -> impl Iterator<Item = DVec2> {
+        let cell = move |i| (f64::from(i) + 0.5) / f64::from(n);
+        (0..n).flat_map(move |i| (0..n).map(move |j| DVec2::new(cell(i), cell(j))))
+    }
+
+    /// ∫ over all directions by an even grid of them.
+    fn over_all_directions(n: u32, f: impl Fn(DVec3) -> f64) -> f64 {
+        let at = |u: DVec2| {
+            let z = 2.0 * u.x - 1.0;
+            let r = (1.0 - z * z).sqrt();
+            let (s, c) = crate::math::elementary::sin_cos(TAU * u.y);
+            DVec3::new(r * c, r * s, z)
+        };
+        grid(n).map(|u| f(at(u))).sum::<f64>() * 2.0 * TAU / f64::from(n * n)
+    }
+
+    /// The mean over all choices of what a bounce gives.
+    fn over_all_choices(bsdf: &Bsdf, f: impl Fn(&Bounce) -> f64) -> f64 {
+        let (lobes, n) = (200, 60);
+        let choices = (0..lobes).map(|i| (f64::from(i) + 0.5) / f64::from(lobes));
+        let sum: f64 = choices
+            .flat_map(|choice| grid(n).map(move |u| (choice, u)))
+            .filter_map(|(choice, u)| bsdf.bounce(choice, u))
+            .map(|bounce| f(&bounce))
+            .sum();
+        sum / f64::from(lobes * n * n)
+    }
+
+    #[test]
+    fn bounces_carry_what_the_lobes_send() {
+        for cosine in [0.95, 0.5] {
+            for (name, bsdf) in materials(cosine) {
+                let sent = over_all_directions(1000, |wi| bsdf.sent(wi).x);
+                let carried = over_all_choices(&bsdf, |bounce| bounce.weight.x);
+                assert!((sent - carried).abs() < 4e-3, "{name}, {cosine}: {sent} sent, {carried} carried");
+                assert!(carried <= 1.0 + 1e-3, "{name}: {carried}");
+            }
+        }
+    }
+
+    #[test]
+    fn densities_are_those_of_the_choice() {
+        // Any function of the direction has the same mean by choosing and by the density.
+        let probe = |w: DVec3| 1.0 + w.x + w.z * w.z + w.y * w.y * w.x;
+        for (name, bsdf) in materials(0.6) {
+            let by_density = over_all_directions(1000, |wi| match bsdf.sent(wi).x > 0.0 {
+                true => bsdf.density(wi) * probe(wi),
+                false => 0.0,
+            });
+            let by_choice = over_all_choices(&bsdf, |bounce| probe(bounce.direction));
+            assert!((by_density - by_choice).abs() < 8e-3, "{name}: {by_density} and {by_choice}");
+        }
+    }
+
+    #[test]
+    fn smooth_ways_have_no_density_and_lose_nothing() {
+        let glass = Bsdf {
+            transmit: Rgb::ONE,
+            ior: 1.5,
+            mirror: Mirror::Boundary(Rgb::ZERO, Fresnel::Exact),
+            ..seen_at(0.7)
+        };
+        let (mut through, n) = (0, 1000);
+        for i in 0..n {
+            let bounce = glass.bounce((f64::from(i) + 0.5) / f64::from(n), DVec2::splat(0.5)).unwrap();
+            assert!(bounce.density.is_none() && (bounce.weight.x - 1.0).abs() < 1e-12);
+            through += i32::from(bounce.through);
+        }
+        let share = super::super::fresnel::dielectric(0.7, 1.5);
+        assert!((f64::from(through) / f64::from(n) - (1.0 - share)).abs() < 2e-3);
+        assert_eq!(glass.sent(DVec3::Z), Rgb::ZERO);
+    }
+}

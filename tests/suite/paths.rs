@@ -1,0 +1,208 @@
+//! Indirect light: pictures by paths whose numbers are known from closed forms, and agreement with what asks lights alone.
+
+use crate::stage::*;
+use glam::DVec3;
+use ogee::render::settings::ResolvedSettings;
+use ogee::scene::*;
+use ogee::world::World;
+use std::f64::consts::PI;
+use std::sync::Arc;
+
+const X: DVec3 = DVec3::X;
+const Y: DVec3 = DVec3::Y;
+const Z: DVec3 = DVec3::Z;
+
+/// Settings of the path tracer without a last segment.
+fn paths(samples: u32, seed: u64) -> ResolvedSettings {
+    ResolvedSettings { tracer: TracerKind::Path, depth: u32::MAX, samples, seed, ..settings([1, 1]) }
+}
+
+/// The mean of 16 pictures of one pixel, each by numbers of its own, and the standard error of that mean.
+fn by_paths(world: &World, eye: DVec3, target: DVec3, samples: u32) -> (f64, f64) {
+    let n = 16;
+    let of = |seed| seen_by(&paths(samples, seed), world, eye, target).0.x;
+    let values: Vec<f64> = (0..n).map(of).collect();
+    let mean = values.iter().sum::<f64>() / n as f64;
+    let squares: f64 = values.iter().map(|v| (v - mean) * (v - mean)).sum();
+    (mean, (squares / (n * (n - 1)) as f64).sqrt())
+}
+
+/// Within three standard errors of the truth, and within 3 per mille of it.
+fn agrees((mean, error): (f64, f64), exact: f64) {
+    let off = (mean - exact).abs();
+    assert!(off <= 3.0 * error + 1e-12 && off <= 0.003 * exact, "{mean} ± {error}, truly {exact}");
+}
+
+/// A material that glows and reflects.
+fn glowing_and(radiance: f64, albedo: f64) -> Arc<Material> {
+    layered(albedo, |l| l.emit = Texture::number(radiance))
+}
+
+#[test]
+fn a_closed_room_that_glows_is_as_bright_as_its_series_and_not_as_the_first_terms() {
+    for (albedo, samples) in [(0.5, 256), (0.8, 2048), (0.9, 8192)] {
+        let room = world(vec![object(sphere(DVec3::ZERO, 1.0), &glowing_and(1.0, albedo))]);
+        let eye = DVec3::new(0.3, 0.1, -0.2);
+        agrees(by_paths(&room, eye, eye + X, samples), 1.0 / (1.0 - albedo));
+    }
+}
+
+#[test]
+fn a_depth_leaves_out_what_longer_paths_bring() {
+    let room = world(vec![object(sphere(DVec3::ZERO, 1.0), &glowing_and(1.0, 0.5))]);
+    let cut = |depth| {
+        let settings = ResolvedSettings { depth, ..paths(4096, 1) };
+        seen_by(&settings, &room, DVec3::ZERO, X).0.x
+    };
+    near(cut(1), 1.0, 1e-12);
+    near(cut(2), 1.5, 2e-3);
+    near(cut(4), 1.875, 4e-3);
+}
+
+#[test]
+fn an_integrating_sphere_adds_the_same_light_everywhere() {
+    let lamp = point(0.5 * X, 1.0);
+    let room = world(vec![object(sphere(DVec3::ZERO, 1.0), &diffuse(0.8)), lamp]);
+    for (p, exact) in [(X, 2.037183), (-X, 1.131768), (Y, 1.200803)] {
+        agrees(by_paths(&room, DVec3::new(0.0, 0.0, 0.2), p, 16384), exact);
+    }
+}
+
+#[test]
+fn spheres_in_one_another_light_each_other() {
+    let world = world(vec![
+        object(sphere(DVec3::ZERO, 0.5), &glowing_and(1.0, 0.5)),
+        object(sphere(DVec3::ZERO, 1.0), &diffuse(0.8)),
+    ]);
+    agrees(by_paths(&world, 0.8 * X, DVec3::ZERO, 4096), 4.0 / 3.0);
+    agrees(by_paths(&world, 0.8 * X, X, 16384), 2.0 / 3.0);
+}
+
+/// A unit cube of six squares that reflect alike, its ceiling glowing.
+fn white_box(albedo: f64) -> World {
+    let h = 0.5;
+    let centre = DVec3::splat(h);
+    let inward = |n: DVec3, a: DVec3| rect(centre - n * h, a * h, n.cross(a) * h);
+    let walls =
+        [(X, Y), (-X, Y), (Z, Y), (-Z, Y), (Y, X)].map(|(n, a)| object(inward(n, a), &diffuse(albedo)));
+    let ceiling = object(inward(-Y, X), &glowing_and(1.0, albedo));
+    world(walls.into_iter().chain([ceiling]).collect())
+}
+
+#[test]
+fn a_white_box_has_the_radiosity_of_its_form_factors() {
+    let centre = DVec3::splat(0.5);
+    let floor = DVec3::new(0.5, 0.0, 0.5);
+    let corner = DVec3::new(0.1, 0.0, 0.1);
+    let wall = DVec3::new(0.0, 0.5, 0.5);
+    let high = DVec3::new(0.0, 0.9, 0.5);
+    for (albedo, truths) in [
+        (0.5, [(floor, 0.19760), (corner, 0.14840), (wall, 0.17765), (high, 0.29235)]),
+        (0.8, [(floor, 0.71306), (corner, 0.61290), (wall, 0.68366), (high, 0.87217)]),
+    ] {
+        let room = white_box(albedo);
+        for (p, exact) in truths {
+            agrees(by_paths(&room, centre, p, 8192), exact);
+        }
+    }
+}
+
+#[test]
+fn direct_light_is_what_asking_every_light_gives() {
+    let floor = || object(plane(Y, 0.0), &diffuse(1.0));
+    let eye = DVec3::new(1e-3, 0.5, 0.0);
+    let lit = |nodes: Vec<Node>| by_paths(&world(nodes), eye, DVec3::ZERO, 4096);
+    agrees(lit(vec![floor(), point(2.0 * Y, 10.0)]), 10.0 / (4.0 * PI));
+    agrees(lit(vec![floor(), area(disc(Y, -Y, 1.0), 1.0, 1)]), 0.5);
+    agrees(lit(vec![floor(), area(rect(Y, 0.5 * X, 0.5 * Z), 1.0, 1)]), 0.239456);
+    agrees(lit(vec![floor(), area(sphere(2.0 * Y, 1.0), 1.0, 1)]), 0.25);
+    agrees(lit(vec![floor(), object(sphere(2.0 * Y, 1.0), &glowing(1.0)), sky(0.5)]), 0.25 + 0.5 * 0.75);
+}
+
+#[test]
+fn curved_lights_that_chance_cannot_weigh_are_only_asked() {
+    let squashed = |d| Some(ogee::math::Affine::scale(d));
+    let lamp = |d| placed(sphere(DVec3::new(0.0, 2.0, 0.0), 1.0), &glowing(1.0), squashed(d));
+    let seen = |d| {
+        let nodes = vec![object(plane(Y, 0.0), &diffuse(1.0)), lamp(d)];
+        by_paths(&world(nodes), DVec3::new(1e-3, 0.5, 0.0), DVec3::ZERO, 16384)
+    };
+    let (round, _) = seen(DVec3::ONE);
+    // A scale that is a similarity but for its last bits takes the other way to sample.
+    agrees(seen(DVec3::new(1.0, 1.0, 1.0 + 1e-9)), round);
+}
+
+#[test]
+fn an_even_sky_is_left_as_it_is_by_what_loses_nothing() {
+    let eye = DVec3::new(0.3, 0.2, 4.0);
+    let is_one = |material: &Arc<Material>| {
+        let world = world(vec![object(sphere(DVec3::ZERO, 1.0), material), sky(1.0)]);
+        for target in [DVec3::ZERO, 0.7 * X, 0.9 * Y, DVec3::new(0.69, 0.69, 0.0)] {
+            let found = seen_by(&paths(16, 0), &world, eye, target).0;
+            near(found.x, 1.0, 1e-12);
+        }
+    };
+    is_one(&diffuse(1.0));
+    is_one(&glass(1.5));
+    is_one(&mirror(1.0));
+    is_one(&layered(1.0, |l| l.reflect = Texture::number(0.5)));
+}
+
+#[test]
+fn a_hole_lets_by_what_it_should() {
+    let veil = layered(0.0, |l| l.opacity = Texture::number(0.25));
+    let nodes = vec![
+        object(plane(Y, 0.0), &diffuse(1.0)),
+        object(rect(Y, 100.0 * X, 100.0 * Z), &veil),
+        point(2.0 * Y, 4.0 * PI),
+    ];
+    agrees(by_paths(&world(nodes), DVec3::new(1e-3, 0.5, 0.0), DVec3::ZERO, 1024), 0.75);
+}
+
+#[test]
+fn frosted_glass_lights_by_lamps_and_by_chance_alike() {
+    // The same small bright ball, as a light that is asked and as one that paths must meet.
+    let frosted = layered(0.0, |l| {
+        (l.transmit, l.ior) = (Texture::number(1.0), Texture::number(1.5));
+        (l.roughness, l.fresnel) = (Texture::number(0.4), Fresnel::Exact);
+    });
+    let scene = |lamp: Node| world(vec![object(rect(Y, 4.0 * X, 4.0 * Z), &frosted), lamp]);
+    let radius = 0.01;
+    let ball = |center: DVec3| sphere(center, radius);
+    let radiance = 1000.0;
+    let (eye, at) = (DVec3::new(0.0, 2.0, 0.5), Y);
+    let lamp = DVec3::new(0.3, 0.0, 0.0);
+    let asked = by_paths(&scene(point(lamp, radiance * PI * radius * radius)), eye, at, 1024);
+    let both = by_paths(&scene(object(ball(lamp), &glowing(radiance))), eye, at, 16384);
+    let off = (asked.0 - both.0).abs();
+    assert!(asked.0 > 0.005 && off < 3.0 * both.1 + 0.002 * both.0, "{asked:?} and {both:?}");
+}
+
+#[test]
+fn one_of_many_lights_is_asked_and_all_count() {
+    let lamps = (0..20).map(|i| point(DVec3::new(f64::from(i) - 10.0, 2.0, 0.0), f64::from(i * i)));
+    let nodes: Vec<Node> = [object(plane(Y, 0.0), &diffuse(0.7))].into_iter().chain(lamps).collect();
+    let exact: f64 = (0..20)
+        .map(|i| {
+            let x = f64::from(i) - 10.0;
+            0.7 / PI * f64::from(i * i) * 2.0 / (x * x + 4.0f64).powf(1.5)
+        })
+        .sum();
+    agrees(by_paths(&world(nodes), DVec3::new(1e-3, 0.5, 0.0), DVec3::ZERO, 8192), exact);
+}
+
+#[test]
+fn a_perfect_mirror_takes_one_ray_and_lamps_are_asked_once_a_surface() {
+    let nodes = vec![object(plane(Y, 0.0), &mirror(1.0)), sky(1.0), point(Y, 1.0)];
+    let (seen, sampler) = seen_by(&paths(1, 0), &world(nodes), DVec3::new(0.0, 1.0, 1.0), DVec3::ZERO);
+    near(seen.x, 1.0, 1e-12);
+    let rays = sampler.rays;
+    assert_eq!((rays.camera, rays.reflected, rays.shadow, rays.scattered), (1, 1, 0, 0));
+}
+
+#[test]
+fn two_mirrors_that_lose_nothing_end() {
+    let nodes = vec![object(plane(Y, 0.0), &mirror(1.0)), object(plane(-Y, -1.0), &mirror(1.0)), sky(1.0)];
+    let (seen, sampler) = seen_by(&paths(64, 0), &world(nodes), DVec3::new(0.0, 0.5, 0.0), Y);
+    assert!(seen.is_finite() && sampler.rays.reflected < 5000, "{:?}", sampler.rays);
+}
