@@ -13,13 +13,12 @@ use super::Tracer;
 use super::medium::{Inside, kept};
 use super::sampler::Sampler;
 use super::settings::ResolvedSettings;
-use crate::scene::{Material, Rgb, Texture};
-use crate::world::bsdf::{Bounce, Bsdf};
+use crate::scene::Rgb;
+use crate::world::bsdf::{Bounce, Bsdf, Odds};
 use crate::world::light::{Choice, LightEnd, Lights};
 use crate::world::texture::Sampled;
-use crate::world::{Hit, Ray, RayKind, World};
+use crate::world::{Hit, Ray, RayKind, SurfacePoint, World};
 use glam::DVec3;
-use std::cell::Cell;
 
 /// The tracer `path`.
 pub struct Path {
@@ -66,14 +65,9 @@ impl Path {
     /// Paths in a world, by these settings.
     pub fn new(world: &World, settings: &ResolvedSettings) -> Path {
         let lights = Lights::new(world);
-        let bounds = world.bounds();
-        let radius = (bounds.max - bounds.min).length() / 2.0;
+        let radius = world.bounds().size().length() / 2.0;
         let choice = Choice::new(&lights.lights, if radius.is_finite() { radius } else { 0.0 });
-        let opaque = |m: &Material| {
-            let is_one = |o: &Texture| matches!(o, Texture::Constant(c) if *c == Rgb::ONE);
-            m.layers.as_deref().is_none_or(|layers| is_one(&layers.opacity))
-        };
-        let has_holes = !world.materials().iter().all(|m| opaque(m));
+        let has_holes = world.materials().iter().any(|m| !m.layers().opacity.is(Rgb::ONE));
         Path { lights, choice, depth: settings.depth, background: settings.background, has_holes }
     }
 }
@@ -124,11 +118,11 @@ impl Path {
 
     /// Asks a light and leaves the surface.
     fn go_on(&self, world: &World, hit: &Hit<'_>, bsdf: &Bsdf, walk: &mut Walk<'_>) -> Sampled<bool> {
-        let which = walk.sampler.next_2d();
+        let (which, odds) = (walk.sampler.next_2d(), bsdf.odds());
         if bsdf.has_lobes() {
-            walk.sum += walk.weight * self.asked(world, hit, bsdf, which.y, walk.sampler)?;
+            walk.sum += walk.weight * self.asked(world, hit, (bsdf, odds), which.y, walk.sampler)?;
         }
-        let Some(bounce) = bsdf.bounce(which.x, walk.sampler.next_2d()) else { return Ok(false) };
+        let Some(bounce) = bsdf.bounce(odds, which.x, walk.sampler.next_2d()) else { return Ok(false) };
         walk.count(&bounce);
         if bounce.through {
             walk.inside = walk.inside.across(bsdf);
@@ -146,16 +140,16 @@ impl Path {
         &self,
         world: &World,
         hit: &Hit<'_>,
-        bsdf: &Bsdf,
+        (bsdf, odds): (&Bsdf, Odds),
         which: f64,
         sampler: &mut Sampler,
     ) -> Sampled<Rgb> {
-        let Some((i, odds)) = self.choice.pick(which) else { return Ok(Rgb::ZERO) };
+        let Some((i, often)) = self.choice.pick(which) else { return Ok(Rgb::ZERO) };
         let light = &self.lights.lights[i];
         let Some(sample) = light.sample(hit.point, bsdf.normal, sampler.next_2d()) else {
             return Ok(Rgb::ZERO);
         };
-        let sent = bsdf.sent(sample.wi) * sample.weight / odds;
+        let sent = bsdf.sent(sample.wi) * sample.weight / often;
         if sent == Rgb::ZERO {
             return Ok(sent);
         }
@@ -164,7 +158,7 @@ impl Path {
             LightEnd::Point(_) | LightEnd::Infinity => None,
         };
         let share = match light.density(hit.point, bsdf.normal, sample.wi, met) {
-            Some(density) => balance(density * odds, bsdf.density(sample.wi)),
+            Some(density) => balance(density * often, bsdf.density(odds, sample.wi)),
             None => 1.0,
         };
         if !light.shadow {
@@ -179,30 +173,24 @@ impl Path {
         if !self.has_holes {
             return Ok(if world.occluded(ray) { 0.0 } else { 1.0 });
         }
-        let fault = Cell::new(None);
-        let left = world.transmittance(ray, |hit| match Bsdf::at(world, hit, ray) {
-            Ok(bsdf) => Rgb::splat(1.0 - bsdf.opacity),
-            Err(e) => {
-                fault.set(Some(e));
-                Rgb::ZERO
-            }
-        });
-        fault.take().map_or(Ok(left.x), Err)
+        let left =
+            world.transmittance(ray, |hit| Ok(Rgb::splat(1.0 - Bsdf::at(world, hit, ray)?.opacity)))?;
+        Ok(left.x)
     }
 
     /// How much of a surface's emission counts that a ray met: its share beside what asking the light gives.
     fn share_of_meeting(&self, world: &World, hit: &Hit<'_>, walk: &Walk<'_>) -> f64 {
         let Some(last) = &walk.last else { return 1.0 };
         let Some(i) = self.lights.of(world, hit.primitive) else { return 1.0 };
-        let light = &self.lights.lights[i];
-        let met = hit.surface_point();
-        match light.density(last.point, last.normal, walk.ray.direction, Some(&met)) {
-            Some(density) => {
-                balance(last.density, density * self.choice.share(i))
-                    * light.dimming((hit.point - last.point).length())
-            }
-            None => 0.0,
-        }
+        let distance = (hit.point - last.point).length();
+        let share = self.share_beside_asking(i, last, walk.ray.direction, Some(&hit.surface_point()));
+        share * self.lights.lights[i].dimming(distance)
+    }
+
+    /// The share that counts of what a ray found of a light, where asking it might have found the same.
+    fn share_beside_asking(&self, i: usize, last: &Last, wi: DVec3, met: Option<&SurfacePoint>) -> f64 {
+        let density = self.lights.lights[i].density(last.point, last.normal, wi, met);
+        density.map_or(0.0, |density| balance(last.density, density * self.choice.share(i)))
     }
 
     /// Radiance from where nothing is, less what asking the skies already gave.
@@ -214,11 +202,7 @@ impl Path {
         };
         let skies = self.lights.lights.iter().enumerate();
         let met = skies.filter_map(|(i, light)| {
-            let share = match light.density(last.point, last.normal, direction, None) {
-                Some(density) => balance(last.density, density * self.choice.share(i)),
-                None => 0.0,
-            };
-            light.as_sky().map(|radiance| radiance * share)
+            light.as_sky().map(|radiance| radiance * self.share_beside_asking(i, last, direction, None))
         });
         met.sum()
     }

@@ -17,7 +17,7 @@ use super::Tracer;
 use super::medium::{Inside, kept};
 use super::sampler::Sampler;
 use super::settings::ResolvedSettings;
-use crate::scene::{Material, Rgb, Texture};
+use crate::scene::{Layers, Material, Rgb};
 use crate::world::bsdf::{Bsdf, Scattered};
 use crate::world::light::Lights;
 use crate::world::texture::Sampled;
@@ -58,8 +58,8 @@ impl Whitted {
 }
 
 fn lets_light_through(material: &Material) -> bool {
-    let is = |t: &Texture, c: Rgb| matches!(t, Texture::Constant(d) if *d == c);
-    material.layers.as_deref().is_some_and(|l| !is(&l.transmit, Rgb::ZERO) || !is(&l.opacity, Rgb::ONE))
+    let is_clear = |l: &Layers| !l.transmit.is(Rgb::ZERO) || !l.opacity.is(Rgb::ONE);
+    material.layers.as_deref().is_some_and(is_clear)
 }
 
 /// A ray still to be followed.

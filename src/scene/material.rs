@@ -25,6 +25,11 @@ impl Texture {
     pub const fn number(x: f64) -> Texture {
         Texture::Constant(Rgb::splat(x))
     }
+
+    /// True for this colour everywhere.
+    pub fn is(&self, colour: Rgb) -> bool {
+        matches!(self, Texture::Constant(c) if *c == colour)
+    }
 }
 
 /// What a surface is made of. Most materials are only diffuse; the rest is boxed, so that a million coloured spheres stay small.

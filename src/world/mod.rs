@@ -158,11 +158,15 @@ impl World {
     /// What is left of the light along a shadow ray. `passes` says what share each surface on the way lets through (0 for most);
     /// it is asked in order until nothing is left. Beyond each the ray is aimed anew at where it ends, so that what it is moved by to be
     /// clear of a surface never brings it into the light itself.
-    pub fn transmittance(&self, ray: &Ray, passes: impl Fn(&Hit<'_>) -> Rgb) -> Transmittance {
+    pub fn transmittance<E>(
+        &self,
+        ray: &Ray,
+        mut passes: impl FnMut(&Hit<'_>) -> Result<Rgb, E>,
+    ) -> Result<Transmittance, E> {
         let end = ray.t_max.is_finite().then(|| ray.origin + ray.direction * ray.t_max);
         let (mut left, mut ray) = (Rgb::ONE, *ray);
         while let Some(hit) = self.closest(&ray) {
-            left *= passes(&hit);
+            left *= passes(&hit)?;
             let next = match end {
                 Some(end) => hit.spawn_to(end),
                 None => hit.spawn(ray.direction, ray.kind),
@@ -173,7 +177,7 @@ impl World {
             }
             ray = Ray { kind: ray.kind, ..next };
         }
-        left
+        Ok(left)
     }
 
     /// The index in `emitters` of the emitter that a primitive is part of.

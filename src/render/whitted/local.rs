@@ -9,7 +9,6 @@ use crate::world::light::{Light, LightSample};
 use crate::world::texture::Sampled;
 use crate::world::{Hit, Ray, World};
 use glam::DVec2;
-use std::cell::Cell;
 
 impl Whitted {
     /// Radiance that the surface sends on from all lights. `first`: seen by the camera itself.
@@ -84,17 +83,11 @@ impl Whitted {
 
 /// Share of light that passes along a shadow ray, through whatever is not opaque.
 fn passed(world: &World, ray: &Ray, sampler: &mut Sampler) -> Sampled<Rgb> {
-    let fault = Cell::new(None);
-    let n_rays = Cell::new(1);
-    let share = world.transmittance(ray, |hit| {
-        n_rays.set(n_rays.get() + 1);
-        through(world, hit, ray).unwrap_or_else(|e| {
-            fault.set(Some(e));
-            Rgb::ZERO
-        })
-    });
-    sampler.rays.shadow += n_rays.get();
-    fault.take().map_or(Ok(share), Err)
+    sampler.rays.shadow += 1;
+    world.transmittance(ray, |hit| {
+        sampler.rays.shadow += 1;
+        through(world, hit, ray)
+    })
 }
 
 /// Share of light that passes a surface, less what was absorbed on the way to it from within.

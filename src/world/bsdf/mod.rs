@@ -16,7 +16,7 @@ use crate::scene::{Fresnel, Lobe, Material, Rgb};
 use fresnel::{reflect, refract};
 use glam::{DVec2, DVec3};
 use lobes::Ggx;
-pub use scatter::Bounce;
+pub use scatter::{Bounce, Odds};
 use std::f64::consts::PI;
 
 /// A material at a hit, seen along `wo`.

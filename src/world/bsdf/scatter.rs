@@ -28,8 +28,8 @@ pub struct Bounce {
 const LEAST_ODDS: f64 = 0.125;
 
 /// How often each way of going on is chosen. They sum to 1, or all are 0.
-#[derive(Clone, Copy)]
-struct Odds {
+#[derive(Clone, Copy, Debug)]
+pub struct Odds {
     diffuse: f64,
     specular: f64,
     mirror: f64,
@@ -48,14 +48,8 @@ impl Bsdf {
         if wi.dot(self.geometric) > 0.0 { self.base(wi) + self.gloss(wi) } else { self.frosted(wi) }
     }
 
-    /// Density per solid angle with which [`Bsdf::bounce`] goes on along `wi`, smooth mirrors and boundaries left out.
-    pub fn density(&self, wi: DVec3) -> f64 {
-        self.density_by(self.odds(), wi)
-    }
-
-    /// A way on: which lobe by `choice` in (0, 1), where in it by u in (0, 1)². None where nothing is sent on from there.
-    pub fn bounce(&self, choice: f64, u: DVec2) -> Option<Bounce> {
-        let odds = self.odds();
+    /// A way on: which lobe by these odds and `choice` in (0, 1), where in it by u in (0, 1)². None where nothing is sent on from there.
+    pub fn bounce(&self, odds: Odds, choice: f64, u: DVec2) -> Option<Bounce> {
         let Odds { diffuse, specular, mirror, .. } = odds;
         let direction = if choice < diffuse {
             to_frame(self.normal, cosine_hemisphere(u))
@@ -78,7 +72,7 @@ impl Bsdf {
         if (direction.dot(self.normal) > 0.0) != (choice < diffuse + specular + mirror) {
             return None;
         }
-        let density = self.density_by(odds, direction);
+        let density = self.density(odds, direction);
         let weight = self.sent(direction) / density;
         let through = direction.dot(self.geometric) < 0.0;
         let useful = density > 0.0 && weight.is_finite() && weight != Rgb::ZERO;
@@ -89,8 +83,8 @@ impl Bsdf {
         Some(Bounce { direction: way.direction, weight: way.weight / odds, density: None, through })
     }
 
-    /// By what each would send on if light came evenly from everywhere.
-    fn odds(&self) -> Odds {
+    /// By what each would send on if light came evenly from everywhere. Asked once a surface: they take the mirror's share.
+    pub fn odds(&self) -> Odds {
         let share = match self.mirror {
             Mirror::None => Rgb::ZERO,
             _ => self.mirror_share(self.wo.dot(self.normal)),
@@ -109,7 +103,8 @@ impl Bsdf {
         Odds { diffuse: of(d), specular: of(s), mirror: of(m), through: of(t) }
     }
 
-    fn density_by(&self, odds: Odds, wi: DVec3) -> f64 {
+    /// Density per solid angle with which [`Bsdf::bounce`] goes on along `wi`, smooth mirrors and boundaries left out.
+    pub fn density(&self, odds: Odds, wi: DVec3) -> f64 {
         let cosine = wi.dot(self.normal);
         if cosine <= 0.0 {
             return if odds.through > 0.0 { odds.through * self.frosted_density(wi) } else { 0.0 };
@@ -205,7 +200,7 @@ mod tests {
         let choices = (0..lobes).map(|i| (f64::from(i) + 0.5) / f64::from(lobes));
         let sum: f64 = choices
             .flat_map(|choice| grid(n).map(move |u| (choice, u)))
-            .filter_map(|(choice, u)| bsdf.bounce(choice, u))
+            .filter_map(|(choice, u)| bsdf.bounce(bsdf.odds(), choice, u))
             .map(|bounce| f(&bounce))
             .sum();
         sum / f64::from(lobes * n * n)
@@ -229,7 +224,7 @@ mod tests {
         let probe = |w: DVec3| 1.0 + w.x + w.z * w.z + w.y * w.y * w.x;
         for (name, bsdf) in materials(0.6) {
             let by_density = over_all_directions(1000, |wi| match bsdf.sent(wi).x > 0.0 {
-                true => bsdf.density(wi) * probe(wi),
+                true => bsdf.density(bsdf.odds(), wi) * probe(wi),
                 false => 0.0,
             });
             let by_choice = over_all_choices(&bsdf, |bounce| probe(bounce.direction));
@@ -247,7 +242,8 @@ mod tests {
         };
         let (mut through, n) = (0, 1000);
         for i in 0..n {
-            let bounce = glass.bounce((f64::from(i) + 0.5) / f64::from(n), DVec2::splat(0.5)).unwrap();
+            let bounce =
+                glass.bounce(glass.odds(), (f64::from(i) + 0.5) / f64::from(n), DVec2::splat(0.5)).unwrap();
             assert!(bounce.density.is_none() && (bounce.weight.x - 1.0).abs() < 1e-12);
             through += i32::from(bounce.through);
         }

@@ -45,7 +45,7 @@ impl AreaLight {
     /// An emitter as a light. None where it has no area or emits nothing anywhere.
     pub fn new(emitter: &Emitter) -> Option<AreaLight> {
         let emission = emitter.material.layers().emit.clone();
-        if matches!(emission, Texture::Constant(c) if c == Rgb::ZERO) {
+        if emission.is(Rgb::ZERO) {
             return None;
         }
         let form = form_of(emitter)?;

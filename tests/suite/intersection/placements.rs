@@ -182,10 +182,11 @@ fn light_passes_what_lets_it_through() {
         _ => Rgb::ZERO,
     };
     let shadow = |t_max| Ray { t_max, kind: RayKind::Shadow, ..ray(DVec3::Y * -5.0, DVec3::Y) };
-    assert_eq!(world.transmittance(&shadow(5.0), half), Rgb::splat(0.5));
-    assert_eq!(world.transmittance(&shadow(7.0), half), Rgb::splat(0.25));
-    assert_eq!(world.transmittance(&shadow(f64::INFINITY), half), Rgb::ZERO);
-    assert_eq!(world.transmittance(&shadow(3.0), half), Rgb::ONE);
+    let passed = |t_max| world.transmittance(&shadow(t_max), |hit| Ok::<Rgb, ()>(half(hit))).unwrap();
+    assert_eq!(passed(5.0), Rgb::splat(0.5));
+    assert_eq!(passed(7.0), Rgb::splat(0.25));
+    assert_eq!(passed(f64::INFINITY), Rgb::ZERO);
+    assert_eq!(passed(3.0), Rgb::ONE);
 }
 
 #[test]

@@ -235,7 +235,7 @@ pub fn material(material: &Material) -> Vec<Part> {
 }
 
 fn is(texture: &Texture, number: f64) -> bool {
-    matches!(texture, Texture::Constant(c) if *c == DVec3::splat(number))
+    texture.is(DVec3::splat(number))
 }
 
 fn colour(texture: &Texture) -> Value {
