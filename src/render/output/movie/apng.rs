@@ -2,7 +2,7 @@
 
 use super::{Part, places};
 use crate::render::output::OutputError;
-use png::{BitDepth, BlendOp, ColorType, Compression, DisposeOp, Encoder, Filter};
+use png::{AdaptiveFilterType, BitDepth, BlendOp, ColorType, Compression, DisposeOp, Encoder};
 use std::io::Cursor;
 
 pub(super) struct Frames {
@@ -33,7 +33,7 @@ impl Frames {
     pub fn encode(&self, [width, height]: [u32; 2]) -> Result<Vec<u8>, OutputError> {
         let mut bytes = Vec::new();
         let mut encoder = Encoder::new(&mut bytes, width, height);
-        as_pixels(&mut encoder, Compression::Balanced);
+        as_pixels(&mut encoder, Compression::Default);
         encoder.set_animated(self.frames.len() as u32, 0).map_err(said)?;
         encoder.set_frame_delay(self.delay.0, self.delay.1).map_err(said)?;
         encoder.set_blend_op(BlendOp::Source).map_err(said)?;
@@ -55,15 +55,14 @@ fn as_pixels<W: std::io::Write>(encoder: &mut Encoder<'_, W>, compression: Compr
     encoder.set_color(ColorType::Rgb);
     encoder.set_depth(BitDepth::Eight);
     encoder.set_compression(compression);
-    encoder.set_filter(Filter::Adaptive);
+    encoder.set_adaptive_filter(AdaptiveFilterType::Adaptive);
 }
 
 /// The pixels of a frame that waited.
 fn pixels(frame: &[u8]) -> Result<Vec<u8>, OutputError> {
     let unread = |error: png::DecodingError| OutputError::Encode(error.to_string());
     let mut reader = png::Decoder::new(Cursor::new(frame)).read_info().map_err(unread)?;
-    let size = reader.output_buffer_size().ok_or_else(|| OutputError::Encode("it is too large".into()))?;
-    let mut pixels = vec![0; size];
+    let mut pixels = vec![0; reader.output_buffer_size()];
     reader.next_frame(&mut pixels).map_err(unread)?;
     Ok(pixels)
 }
