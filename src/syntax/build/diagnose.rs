@@ -375,6 +375,10 @@ fn wants_value(before: &Piece<'_>, at: Option<Piece<'_>>, closing: &str) -> Said
         return Said::new(before, "a `.` stands tight between a value and the name of its part")
             .hint("write `v.x`, `path.length`");
     }
+    if before.text == "if" && !before.first {
+        return Said::new(before, "an `if` is an item, and no value")
+            .hint("a choice of values is `condition ? a : b`");
+    }
     match at {
         Some(at) if !at.first => {
             let found = Said::new(&opening(&at), format!("{said}, found {}", name_of(&at)));
