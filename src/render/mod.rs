@@ -31,6 +31,7 @@ pub fn tracer(
         TracerKind::Raycast => Some(Box::new(whitted::Whitted::raycast(world, settings))),
         TracerKind::Whitted => Some(Box::new(whitted::Whitted::new(world, settings))),
         TracerKind::Path => Some(Box::new(path::Path::new(world, settings))),
-        TracerKind::MonteCarlo | TracerKind::Irradiance | TracerKind::Photon => None,
+        TracerKind::MonteCarlo => Some(Box::new(path::Path::branching(world, settings))),
+        TracerKind::Irradiance | TracerKind::Photon => None,
     }
 }

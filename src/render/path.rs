@@ -1,5 +1,6 @@
 //! Path tracing (Kajiya, *The Rendering Equation*, 1986): one path from the camera for each sample, which goes on wherever
-//! light may have come from, and at every surface asks one light directly.
+//! light may have come from, and at every surface asks one light directly. `montecarlo` does the same with a path that
+//! branches once, at the first surface that spreads light: what the camera ray cost is shared by all branches.
 //!
 //! What a light sends is found in two ways, by asking it and by meeting it; each counts by its share of the two densities
 //! (the balance heuristic of Veach & Guibas, 1995), so that neither is counted twice. Lights without extent are only asked;
@@ -18,9 +19,9 @@ use crate::world::bsdf::{Bounce, Bsdf, Odds};
 use crate::world::light::{Choice, LightEnd, Lights};
 use crate::world::texture::Sampled;
 use crate::world::{Hit, Ray, RayKind, SurfacePoint, World};
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
-/// The tracer `path`.
+/// The tracers `path` and `montecarlo`.
 pub struct Path {
     lights: Lights,
     choice: Choice,
@@ -28,7 +29,12 @@ pub struct Path {
     background: Option<Rgb>,
     /// True where some surface is there only in part.
     has_holes: bool,
+    /// How many ways on are taken from the first surface that spreads light.
+    branches: u32,
 }
+
+/// Branches of `montecarlo`. A power of two, so that the points of a surface's ways are even.
+const BRANCHES: u32 = 4;
 
 /// Paths end by chance from this segment on.
 const FIRST_ROULETTE: u32 = 5;
@@ -53,6 +59,8 @@ struct Walk<'a> {
     /// Segments from the camera, this one counted.
     segment: u32,
     inside: Inside,
+    /// How many ways on the next surface that spreads light gives.
+    branches: u32,
     /// None after the camera and after what is smooth: nothing but this ray could have met what it meets.
     last: Option<Last>,
     /// True while the camera sees along it, by mirrors and glass.
@@ -68,30 +76,44 @@ impl Path {
         let radius = world.bounds().size().length() / 2.0;
         let choice = Choice::new(&lights.lights, if radius.is_finite() { radius } else { 0.0 });
         let has_holes = world.materials().iter().any(|m| !m.layers().opacity.is(Rgb::ONE));
-        Path { lights, choice, depth: settings.depth, background: settings.background, has_holes }
+        let ResolvedSettings { depth, background, .. } = *settings;
+        Path { lights, choice, depth, background, has_holes, branches: 1 }
+    }
+
+    /// Paths that branch once.
+    pub fn branching(world: &World, settings: &ResolvedSettings) -> Path {
+        Path { branches: BRANCHES, ..Path::new(world, settings) }
     }
 }
 
 impl Tracer for Path {
     fn radiance(&self, world: &World, ray: Ray, sampler: &mut Sampler) -> Rgb {
         sampler.rays.camera += 1;
-        let (weight, inside) = (Rgb::ONE, Inside::NOTHING);
-        let mut walk =
-            Walk { ray, weight, segment: 1, inside, last: None, seen: true, sum: Rgb::ZERO, sampler };
-        loop {
-            match self.follow(world, &mut walk) {
-                Ok(true) => {}
-                Ok(false) => return walk.sum,
-                Err(fault) => {
-                    walk.sampler.undefined = Some(fault);
-                    return walk.sum;
-                }
-            }
+        let mut walk = Walk {
+            ray,
+            weight: Rgb::ONE,
+            segment: 1,
+            inside: Inside::NOTHING,
+            branches: self.branches,
+            last: None,
+            seen: true,
+            sum: Rgb::ZERO,
+            sampler,
+        };
+        if let Err(fault) = self.trace(world, &mut walk) {
+            walk.sampler.undefined = Some(fault);
         }
+        walk.sum
     }
 }
 
 impl Path {
+    /// Follows a path to its end.
+    fn trace(&self, world: &World, walk: &mut Walk<'_>) -> Sampled<()> {
+        while self.follow(world, walk)? {}
+        Ok(())
+    }
+
     /// Takes a path to the end of its ray and aims it anew. False where it ends.
     fn follow(&self, world: &World, walk: &mut Walk<'_>) -> Sampled<bool> {
         let Some(hit) = world.closest(&walk.ray) else {
@@ -116,39 +138,47 @@ impl Path {
         self.go_on(world, &hit, &bsdf, walk)
     }
 
-    /// Asks a light and leaves the surface.
+    /// Asks lights and leaves the surface, along all ways of the branches where it is the one that branches.
     fn go_on(&self, world: &World, hit: &Hit<'_>, bsdf: &Bsdf, walk: &mut Walk<'_>) -> Sampled<bool> {
-        let (which, odds) = (walk.sampler.next_2d(), bsdf.odds());
-        if bsdf.has_lobes() {
-            walk.sum += walk.weight * self.asked(world, hit, (bsdf, odds), which.y, walk.sampler)?;
+        let spreads = bsdf.has_lobes();
+        let n = if spreads { std::mem::replace(&mut walk.branches, 1) } else { 1 };
+        let (which, odds) = (walk.sampler.next_set(), bsdf.odds());
+        if spreads && !self.lights.lights.is_empty() {
+            let places = walk.sampler.next_set();
+            for i in 0..n {
+                let u = (which.point(i, n).y, places.point(i, n));
+                let asked = self.asked(world, hit, (bsdf, odds), u, walk.sampler)?;
+                walk.sum += walk.weight * asked / f64::from(n);
+            }
         }
-        let Some(bounce) = bsdf.bounce(odds, which.x, walk.sampler.next_2d()) else { return Ok(false) };
-        walk.count(&bounce);
-        if bounce.through {
-            walk.inside = walk.inside.across(bsdf);
+        let ways = walk.sampler.next_set();
+        let way = |i| bsdf.bounce(odds, which.point(i, n).x, ways.point(i, n));
+        if n == 1 {
+            return Ok(way(0).is_some_and(|bounce| walk.leave(hit, bsdf, &bounce)));
         }
-        walk.weight *= bounce.weight;
-        walk.ray = hit.spawn(bounce.direction, RayKind::Indirect);
-        walk.last = bounce.density.map(|density| Last { point: hit.point, normal: bsdf.normal, density });
-        walk.seen &= walk.last.is_none();
-        walk.segment += 1;
-        Ok(walk.segment < FIRST_ROULETTE || walk.survives())
+        for bounce in (0..n).filter_map(way) {
+            let mut branch = walk.branch();
+            if branch.leave(hit, bsdf, &bounce) {
+                self.trace(world, &mut branch)?;
+            }
+            let found = branch.sum;
+            walk.sum += found / f64::from(n);
+        }
+        Ok(false)
     }
 
-    /// What the surface sends on of the light that one of the lights, asked directly, sends it.
+    /// What the surface sends on of the light that one of the lights, chosen by `which` and asked directly at the place `u`, sends it.
     fn asked(
         &self,
         world: &World,
         hit: &Hit<'_>,
         (bsdf, odds): (&Bsdf, Odds),
-        which: f64,
+        (which, u): (f64, DVec2),
         sampler: &mut Sampler,
     ) -> Sampled<Rgb> {
         let Some((i, often)) = self.choice.pick(which) else { return Ok(Rgb::ZERO) };
         let light = &self.lights.lights[i];
-        let Some(sample) = light.sample(hit.point, bsdf.normal, sampler.next_2d()) else {
-            return Ok(Rgb::ZERO);
-        };
+        let Some(sample) = light.sample(hit.point, bsdf.normal, u) else { return Ok(Rgb::ZERO) };
         let sent = bsdf.sent(sample.wi) * sample.weight / often;
         if sent == Rgb::ZERO {
             return Ok(sent);
@@ -200,11 +230,8 @@ impl Path {
             let background = if walk.seen { self.background } else { None };
             return background.or_else(|| self.lights.sky(direction)).unwrap_or(Rgb::ZERO);
         };
-        let skies = self.lights.lights.iter().enumerate();
-        let met = skies.filter_map(|(i, light)| {
-            light.as_sky().map(|radiance| radiance * self.share_beside_asking(i, last, direction, None))
-        });
-        met.sum()
+        let skies = self.lights.skies(direction);
+        skies.map(|(i, radiance)| radiance * self.share_beside_asking(i, last, direction, None)).sum()
     }
 }
 
@@ -214,6 +241,25 @@ fn balance(this: f64, other: f64) -> f64 {
 }
 
 impl Walk<'_> {
+    /// A path of its own from here on, of which nothing is summed yet.
+    fn branch(&mut self) -> Walk<'_> {
+        Walk { sum: Rgb::ZERO, sampler: &mut *self.sampler, ..*self }
+    }
+
+    /// Leaves a surface. False where the path ends by chance.
+    fn leave(&mut self, hit: &Hit<'_>, bsdf: &Bsdf, bounce: &Bounce) -> bool {
+        self.count(bounce);
+        if bounce.through {
+            self.inside = self.inside.across(bsdf);
+        }
+        self.weight *= bounce.weight;
+        self.ray = hit.spawn(bounce.direction, RayKind::Indirect);
+        self.last = bounce.density.map(|density| Last { point: hit.point, normal: bsdf.normal, density });
+        self.seen &= self.last.is_none();
+        self.segment += 1;
+        self.segment < FIRST_ROULETTE || self.survives()
+    }
+
     /// Ends by chance where little is carried; what goes on counts for those that ended.
     fn survives(&mut self) -> bool {
         let most = if self.segment < LONG { 1.0 } else { MOST_SURVIVAL };

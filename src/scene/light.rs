@@ -1,5 +1,6 @@
 //! Lights as they are written.
 
+use super::assets::image::Picture;
 use super::{Object, Rgb};
 use crate::diag::Span;
 use crate::math::Affine;
@@ -68,11 +69,15 @@ pub enum LightSource {
 pub enum Sky {
     /// The same everywhere.
     Uniform(Rgb),
-    /// An equirectangular picture.
+    /// An equirectangular picture: its middle toward −z, its upper edge toward +y, its right half toward +x.
     Image {
         /// Path, joined to the folder of the file that names it.
         path: PathBuf,
-        /// The value.
+        /// Multiplies the picture's light.
+        factor: Rgb,
+        /// The name, where it is given.
         span: Span,
+        /// The picture itself, once it is read.
+        picture: Picture,
     },
 }

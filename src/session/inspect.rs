@@ -188,7 +188,9 @@ fn light(light: &Light, left: &mut usize) -> Entry {
             vec![("area", json!(shape_word(&surface.shape))), ("radiance", vector(*radiance))]
         }
         LightSource::Sky(Sky::Uniform(radiance)) => vec![("sky", vector(*radiance))],
-        LightSource::Sky(Sky::Image { path, .. }) => vec![("sky", quoted(&path.display().to_string()))],
+        LightSource::Sky(Sky::Image { path, factor, .. }) => {
+            vec![("sky", quoted(&path.display().to_string())), ("radiance", vector(*factor))]
+        }
     };
     properties.extend(light.falloff.map(|falloff| ("falloff", json!(falloff))));
     if !light.shadow {

@@ -44,6 +44,7 @@ pub(super) fn lower(
     let (aggregates, materials, mut sink) = lowered(nodes, options, assets, kept);
     sink.extend(super::texture::load_pictures(materials.iter().map(|m| &**m), assets));
     let (lights, emitters) = lights::gather(&aggregates, &materials, &mut sink);
+    sink.extend(super::texture::load_skies(lights.iter().map(|placed| &*placed.light), assets));
     (settled(World { lights, emitters, aggregates, materials }), sink.into_sorted())
 }
 

@@ -4,7 +4,7 @@
 mod load;
 mod picture;
 
-pub use load::load_pictures;
+pub use load::{load_pictures, load_skies};
 
 use super::Hit;
 use super::shape::mesh::WornPlace;

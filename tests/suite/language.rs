@@ -3,7 +3,7 @@
 
 use ogee::diag::{Diagnostic, Severity};
 use ogee::scene::assets::Loader;
-use ogee::scene::{Node, PatternKind, SampledFunction, Texture};
+use ogee::scene::{LightSource, Node, PatternKind, Rgb, SampledFunction, Sky, Texture};
 use ogee::session::{Answer, Evaluated, Limits, Options, Session};
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
@@ -443,6 +443,19 @@ fn words_win_where_only_words_are_taken_and_names_elsewhere() {
     let text = "let phong = 3\nlet lobe_word = 2\nmaterial m { lobe phong  exponent phong  specular 0.1 }\nsphere { material m }\n\
                 fn words() { lobe blinn }\nmaterial n { words() }\nrender { tracer raycast  size 8, 8 }";
     assert_eq!(told(&evaluate(text)), "");
+}
+
+#[test]
+fn a_copy_of_a_sky_keeps_its_picture_though_its_path_was_joined_already() {
+    let text =
+        "let a = light { sky \"sky.hdr\"  radiance 2 }\na with { radiance 3  rotate y * 90 }\nsphere { }";
+    let files = [("scenes/test.scene", text), ("scenes/sky.hdr", "")];
+    let evaluated = session(&files, Options::default()).evaluate_text("scenes/test.scene", text);
+    assert_eq!(told(&evaluated), "");
+    let Some(Node::Light(light)) = evaluated.scene.nodes.first() else { panic!("a light") };
+    let LightSource::Sky(Sky::Image { path, factor, .. }) = &light.source else { panic!("a picture") };
+    assert_eq!((path.as_path(), *factor), (std::path::Path::new("scenes/sky.hdr"), Rgb::splat(3.0)));
+    assert!(light.transform.is_some());
 }
 
 #[test]

@@ -19,8 +19,13 @@ fn paths(samples: u32, seed: u64) -> ResolvedSettings {
 
 /// The mean of 16 pictures of one pixel, each by numbers of its own, and the standard error of that mean.
 fn by_paths(world: &World, eye: DVec3, target: DVec3, samples: u32) -> (f64, f64) {
+    by(TracerKind::Path, world, (eye, target), samples)
+}
+
+fn by(tracer: TracerKind, world: &World, (eye, target): (DVec3, DVec3), samples: u32) -> (f64, f64) {
     let n = 16;
-    let of = |seed| seen_by(&paths(samples, seed), world, eye, target).0.x;
+    let settings = |seed| ResolvedSettings { tracer, ..paths(samples, seed) };
+    let of = |seed| seen_by(&settings(seed), world, eye, target).0.x;
     let values: Vec<f64> = (0..n).map(of).collect();
     let mean = values.iter().sum::<f64>() / n as f64;
     let squares: f64 = values.iter().map(|v| (v - mean) * (v - mean)).sum();
@@ -44,6 +49,59 @@ fn a_closed_room_that_glows_is_as_bright_as_its_series_and_not_as_the_first_term
         let room = world(vec![object(sphere(DVec3::ZERO, 1.0), &glowing_and(1.0, albedo))]);
         let eye = DVec3::new(0.3, 0.1, -0.2);
         agrees(by_paths(&room, eye, eye + X, samples), 1.0 / (1.0 - albedo));
+    }
+}
+
+#[test]
+fn paths_that_branch_find_the_same_light() {
+    let by_branches =
+        |world: &World, eye, target, samples| by(TracerKind::MonteCarlo, world, (eye, target), samples);
+    let glows = world(vec![object(sphere(DVec3::ZERO, 1.0), &glowing_and(1.0, 0.8))]);
+    agrees(by_branches(&glows, DVec3::new(0.3, 0.1, -0.2), X, 1024), 5.0);
+    let lamp = point(0.5 * X, 1.0);
+    let lit = world(vec![object(sphere(DVec3::ZERO, 1.0), &diffuse(0.8)), lamp]);
+    agrees(by_branches(&lit, DVec3::new(0.0, 0.0, 0.2), -X, 4096), 1.131768);
+    let floor = DVec3::new(0.5, 0.0, 0.5);
+    agrees(by_branches(&white_box(0.5), DVec3::splat(0.5), floor, 4096), 0.19760);
+    // Past a smooth mirror the first surface that spreads light branches, and no other does.
+    let mirrored = world(vec![
+        object(rect(2.0 * X, Y, Z), &mirror(1.0)),
+        object(sphere(DVec3::ZERO, 4.0), &glowing_and(1.0, 0.5)),
+    ]);
+    agrees(by_branches(&mirrored, DVec3::ZERO, X, 1024), by_paths(&mirrored, DVec3::ZERO, X, 4096).0);
+}
+
+/// A sky of a picture.
+fn picture_sky(colour: impl Fn(f64, f64) -> [f64; 3]) -> Node {
+    let picture = ogee::scene::assets::image::Picture::default();
+    picture.set(Arc::new(ogee::scene::assets::image::Image::from_texels(64, 32, colour)));
+    let span = ogee::diag::Span { source: ogee::diag::SourceId(0), start: 0, end: 0 };
+    light(LightSource::Sky(Sky::Image { path: "sky.hdr".into(), factor: Rgb::ONE, span, picture }))
+}
+
+#[test]
+fn a_sky_of_a_picture_lights_as_much_as_it_shines() {
+    let eye = DVec3::new(1e-3, 0.5, 0.0);
+    let floor = |sky| world(vec![object(plane(Y, 0.0), &diffuse(1.0)), sky]);
+    let lit = |tracer, sky| by(tracer, &floor(sky), (eye, DVec3::ZERO), 4096);
+    for tracer in [TracerKind::Whitted, TracerKind::Path, TracerKind::MonteCarlo] {
+        // With its mirror image it would be even: half the light, and so it stays with a small sun at half height in both.
+        agrees(lit(tracer, picture_sky(|x, _| [f64::from(x > 0.5); 3])), 0.5);
+        let sun = |x: f64, y: f64| f64::from((x - 0.3).abs() < 0.016 && (y - 0.25).abs() < 0.032) * 1e4;
+        let suns = lit(tracer, picture_sky(move |x, y| [sun(x, y) + sun(1.0 - x, y); 3]));
+        let one = lit(tracer, picture_sky(move |x, y| [2.0 * sun(x, y); 3]));
+        assert!((suns.0 - one.0).abs() < 3e-3 * one.0, "{tracer:?}: {} and {}", suns.0, one.0);
+    }
+}
+
+#[test]
+fn an_even_picture_of_a_sky_is_left_as_it_is_by_what_loses_nothing() {
+    for material in [glass(1.5), mirror(1.0)] {
+        let world = world(vec![object(sphere(DVec3::ZERO, 1.0), &material), picture_sky(|_, _| [1.0; 3])]);
+        for target in [DVec3::ZERO, 0.7 * X, DVec3::new(0.69, 0.69, 0.0)] {
+            let found = seen_by(&paths(16, 0), &world, DVec3::new(0.3, 0.2, 4.0), target).0;
+            near(found.x, 1.0, 1e-12);
+        }
     }
 }
 

@@ -1,10 +1,11 @@
 //! Lights: a source, its strength in the unit that fits it, and how it falls off.
 
-use super::{common, shapes::conflict};
+use super::{common, existing_file, shapes::conflict};
 use crate::diag::{Code, Diagnostic};
 use crate::lang::coerce;
 use crate::lang::table::{Block, Context, Kind, Outcome, Property, Reported, Role, Type};
 use crate::lang::value::Value;
+use crate::scene::assets::image::Picture;
 use crate::scene::{Light, LightSource, Object, Rgb, Shape, Sky};
 use std::sync::Arc;
 
@@ -45,7 +46,7 @@ pub static LIGHT: Kind = Kind {
             "sky",
             &[&[Type::Colour], &[Type::Text]],
             "",
-            "shines from everywhere behind all else, with this radiance or that of a picture; `radiance` multiplies it",
+            "shines from everywhere behind all else, with this radiance or that of an equirectangular picture (HDR, EXR), whose middle lies toward −z; `radiance` multiplies it",
         ),
         Property::new(
             "intensity",
@@ -244,9 +245,7 @@ fn sky(ctx: &mut dyn Context, block: &Block) -> Outcome<Sky> {
     if let Some(Value::Vector3(colour)) = block.value("sky") {
         return Ok(Sky::Uniform(*colour * factor));
     }
-    let said = Diagnostic::new(Code::NotBuilt, block.place("sky"), "a `sky` from a picture is not built yet")
-        .label("this light is left out")
-        .hint("use a colour, as in `sky <0.35, 0.45, 0.6>`");
-    ctx.report(said);
-    Err(Reported)
+    let (written, span) = (block.text("sky").unwrap_or_default(), block.place("sky"));
+    let path = existing_file(ctx, written, span)?;
+    Ok(Sky::Image { path, factor, span, picture: Picture::default() })
 }

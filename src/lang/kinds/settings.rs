@@ -238,7 +238,7 @@ fn tracer(ctx: &mut dyn Context, block: &Block) -> Option<TracerKind> {
         "irradiance" => TracerKind::Irradiance,
         _ => TracerKind::Photon,
     };
-    if matches!(kind, TracerKind::MonteCarlo | TracerKind::Irradiance | TracerKind::Photon) {
+    if matches!(kind, TracerKind::Irradiance | TracerKind::Photon) {
         not_built(ctx, block, "tracer", "path");
     }
     Some(kind)

@@ -13,7 +13,7 @@ use crate::lang::check;
 use crate::lang::coerce;
 use crate::lang::table::{Block, Context, Kind, Outcome, Role};
 use crate::lang::value::{Given, Value};
-use crate::scene::{Light, MeshSource, Node, Object, Pattern, Shape};
+use crate::scene::{Light, LightSource, MeshSource, Node, Object, Pattern, Shape, Sky};
 use std::sync::Arc;
 
 /// What a pattern takes: transforms alone. No block of the language, so it stands in no table.
@@ -224,15 +224,14 @@ fn smoothed(
 fn to_light(ctx: &mut dyn Context, light: &Light, place: Place, mut given: Vec<Given>) -> Outcome {
     let has_own = given.iter().any(|g| !common::is_transform(&g.name));
     if has_own {
+        let new_sky = given.iter().any(|g| &*g.name == "sky");
         let rebuilt = rebuild(ctx, &super::lights::LIGHT, apart::light(light, &given), place, given)?;
-        let (Value::Light(changed), Some(before)) = (&rebuilt, light.transform.as_deref()) else {
-            return Ok(rebuilt);
-        };
+        let Value::Light(changed) = &rebuilt else { return Ok(rebuilt) };
         let mut changed = (**changed).clone();
-        changed.transform = Some(Box::new(match changed.transform.as_deref() {
-            Some(after) => before.then(after),
-            None => *before,
-        }));
+        changed.transform = shapes::after(light.transform.as_deref(), changed.transform.map(|t| *t));
+        if !new_sky {
+            keep_picture(&mut changed.source, &light.source);
+        }
         return Ok(Value::Light(Arc::new(changed)));
     }
     check::check_given(ctx, &super::lights::LIGHT, &mut given)?;
@@ -240,6 +239,16 @@ fn to_light(ctx: &mut dyn Context, light: &Light, place: Place, mut given: Vec<G
     copy.span = place.whole;
     copy.transform = shapes::after(light.transform.as_deref(), common::transform_of(ctx, &given)?);
     Ok(Value::Light(Arc::new(copy)))
+}
+
+/// Puts the picture of a sky back where an even sky stands for it.
+fn keep_picture(changed: &mut LightSource, before: &LightSource) {
+    if let (LightSource::Sky(changed), LightSource::Sky(Sky::Image { path, span, picture, .. })) =
+        (changed, before)
+        && let Sky::Uniform(factor) = *changed
+    {
+        *changed = Sky::Image { path: path.clone(), factor, span: *span, picture: picture.clone() };
+    }
 }
 
 fn to_pattern(ctx: &mut dyn Context, pattern: &Pattern, place: Place, mut given: Vec<Given>) -> Outcome {

@@ -261,6 +261,11 @@ impl Picture {
         self.0.get().map(Arc::as_ref)
     }
 
+    /// The same, to be kept elsewhere.
+    pub fn shared(&self) -> Option<Arc<Image>> {
+        self.0.get().cloned()
+    }
+
     /// Keeps a picture; the first one stays.
     pub fn set(&self, image: Arc<Image>) {
         let _ = self.0.set(image);

@@ -51,6 +51,7 @@ impl Light {
             }
             Source::Sun { irradiance, .. } => disc * mean(*irradiance),
             Source::Sky { radiance } => PI * disc * mean(*radiance),
+            Source::PictureSky(sky) => PI * disc * sky.mean(),
             Source::Area(area) => PI * area.area() * mean(area.typical()),
         }
     }

@@ -5,6 +5,7 @@
 //! [`LightSample::weight`] by BSDF, cosine and visibility and averages.
 
 mod choice;
+mod picture;
 mod pieces;
 mod surface;
 
@@ -14,6 +15,7 @@ use crate::math::elementary::{sin_cos, sin_cos_degrees};
 use crate::scene::{LightSource, Rgb, Sky};
 pub use choice::Choice;
 use glam::{DVec2, DVec3};
+use picture::PictureSky;
 use std::f64::consts::{PI, TAU};
 pub use surface::{AreaLight, emits_inward};
 
@@ -22,8 +24,8 @@ pub use surface::{AreaLight, emits_inward};
 pub struct Lights {
     /// Point, spot, sun and sky lights in the order of the scene, then the surfaces that emit.
     pub lights: Vec<Light>,
-    /// Radiance of all skies together; none where there is no sky.
-    sky: Option<Rgb>,
+    /// Which of them are skies.
+    skies: Vec<usize>,
     /// The light of each emitter of the world, by its index there.
     of_emitter: Vec<Option<usize>>,
 }
@@ -47,6 +49,7 @@ enum Source {
     Spot { position: DVec3, direction: DVec3, cosines: [f64; 2], intensity: Rgb },
     Sun { toward: DVec3, irradiance: Rgb },
     Sky { radiance: Rgb },
+    PictureSky(Box<PictureSky>),
     Area(Box<AreaLight>),
 }
 
@@ -91,15 +94,8 @@ impl Lights {
     /// The lights of a world.
     pub fn new(world: &World) -> Lights {
         let placed = world.lights.iter().filter_map(Light::placed);
-        let skies = world.lights.iter().filter_map(|placed| match &placed.light.source {
-            LightSource::Sky(Sky::Uniform(radiance)) => Some(*radiance),
-            LightSource::Sky(Sky::Image { .. })
-            | LightSource::Point { .. }
-            | LightSource::Spot { .. }
-            | LightSource::Sun { .. }
-            | LightSource::Area { .. } => None,
-        });
         let mut lights: Vec<Light> = placed.collect();
+        let skies = (0..lights.len()).filter(|&i| lights[i].is_sky()).collect();
         let add = |emitter| {
             Light::emitter(emitter).map(|light| {
                 lights.push(light);
@@ -107,7 +103,7 @@ impl Lights {
             })
         };
         let of_emitter = world.emitters.iter().map(add).collect();
-        Lights { lights, sky: skies.reduce(|a, b| a + b), of_emitter }
+        Lights { lights, skies, of_emitter }
     }
 
     /// The light that a primitive is part of, by its index; none where it does not emit or is not asked.
@@ -115,16 +111,20 @@ impl Lights {
         self.of_emitter[world.emitter_of(primitive)?]
     }
 
-    /// Radiance of the sky in a direction; none where there is no sky.
+    /// The radiance of each sky in a direction, with the light that it is.
+    pub fn skies(&self, direction: DVec3) -> impl Iterator<Item = (usize, Rgb)> {
+        self.skies.iter().map(move |&i| (i, self.lights[i].from_beyond(direction)))
+    }
+
+    /// Radiance of all skies together in a direction; none where there is no sky.
     pub fn sky(&self, direction: DVec3) -> Option<Rgb> {
-        let _ = direction;
-        self.sky
+        self.skies(direction).map(|(_, radiance)| radiance).reduce(|a, b| a + b)
     }
 }
 
 impl Light {
     /// A light where it stands. None for an area light, whose object is among the world's emitters, and for a sky from a
-    /// picture, which is not built yet.
+    /// picture that is black or could not be read.
     pub fn placed(placed: &PlacedLight) -> Option<Light> {
         let place = &placed.world_from_local;
         let (source, samples) = match &placed.light.source {
@@ -147,7 +147,11 @@ impl Light {
             LightSource::Sky(Sky::Uniform(radiance)) => {
                 (Source::Sky { radiance: *radiance }, placed.light.samples.max(1))
             }
-            LightSource::Sky(Sky::Image { .. }) | LightSource::Area { .. } => return None,
+            LightSource::Sky(Sky::Image { factor, picture, .. }) => {
+                let sky = PictureSky::new(picture.shared()?, *factor, place)?;
+                (Source::PictureSky(Box::new(sky)), placed.light.samples.max(1))
+            }
+            LightSource::Area { .. } => return None,
         };
         Some(Light { source, falloff: placed.light.falloff, shadow: placed.light.shadow, samples })
     }
@@ -169,7 +173,7 @@ impl Light {
     pub fn is_delta(&self) -> bool {
         match self.source {
             Source::Point { .. } | Source::Spot { .. } | Source::Sun { .. } => true,
-            Source::Sky { .. } | Source::Area(_) => false,
+            Source::Sky { .. } | Source::PictureSky(_) | Source::Area(_) => false,
         }
     }
 
@@ -186,6 +190,11 @@ impl Light {
                 Some(LightSample { wi: *toward, weight: *irradiance, pdf: None, end: LightEnd::Infinity })
             }
             Source::Sky { radiance } => Some(from_sky(*radiance, normal, u)),
+            Source::PictureSky(sky) => {
+                let (wi, pdf) = sky.choose(u);
+                let weight = sky.radiance(wi) / pdf;
+                Some(LightSample { wi, weight, pdf: Some(pdf), end: LightEnd::Infinity })
+            }
             Source::Area(area) => {
                 let (mut sample, distance) = area.sample(at, normal, u)?;
                 sample.weight *= self.dimming(distance);
@@ -200,6 +209,7 @@ impl Light {
         match (&self.source, met) {
             _ if !self.shadow => None,
             (Source::Sky { .. }, None) => Some(wi.dot(normal).max(0.0) / PI),
+            (Source::PictureSky(sky), None) => Some(sky.density(wi)),
             (Source::Area(area), Some(met)) => area.density(at, normal, wi, met),
             _ => None,
         }
@@ -210,11 +220,16 @@ impl Light {
         self.falloff.map_or(1.0, |f| distance * distance * attenuation(f, distance))
     }
 
-    /// The radiance of a sky; none of other lights.
-    pub fn as_sky(&self) -> Option<Rgb> {
-        match self.source {
-            Source::Sky { radiance } => Some(radiance),
-            Source::Point { .. } | Source::Spot { .. } | Source::Sun { .. } | Source::Area(_) => None,
+    fn is_sky(&self) -> bool {
+        matches!(self.source, Source::Sky { .. } | Source::PictureSky(_))
+    }
+
+    /// What comes of it from beyond everything, along a unit vector toward there: nothing but of skies.
+    fn from_beyond(&self, direction: DVec3) -> Rgb {
+        match &self.source {
+            Source::Sky { radiance } => *radiance,
+            Source::PictureSky(sky) => sky.radiance(direction),
+            Source::Point { .. } | Source::Spot { .. } | Source::Sun { .. } | Source::Area(_) => Rgb::ZERO,
         }
     }
 

@@ -1,8 +1,9 @@
-//! Reading the pictures that materials name, before the first ray.
+//! Reading the pictures that materials and skies name, before the first ray.
 
-use crate::diag::{Code, Diagnostic};
+use crate::diag::{Code, Diagnostic, Span};
+use crate::scene::assets::image::Picture;
 use crate::scene::assets::{AssetCache, AssetError};
-use crate::scene::{ImagePattern, Material, Pattern, PatternKind, Texture};
+use crate::scene::{ImagePattern, Light, LightSource, Material, Pattern, PatternKind, Sky, Texture};
 use std::path::Path;
 
 /// Reads every picture that the materials name, each file once, and leaves it in its pattern. What cannot be read is an error
@@ -14,6 +15,20 @@ pub fn load_pictures<'m>(
     let mut faults = Vec::new();
     for material in materials {
         each_texture(material, &mut |texture| load(texture, cache, &mut faults));
+    }
+    faults
+}
+
+/// Reads the pictures of skies, and leaves them in their lights. What cannot be read is an error at the name, and gives no light.
+pub fn load_skies<'l>(
+    lights: impl IntoIterator<Item = &'l Light>,
+    cache: &AssetCache<'_>,
+) -> Vec<Diagnostic> {
+    let mut faults = Vec::new();
+    for light in lights {
+        if let LightSource::Sky(Sky::Image { path, span, picture, .. }) = &light.source {
+            load_picture(picture, path, *span, cache, &mut faults);
+        }
     }
     faults
 }
@@ -53,15 +68,25 @@ fn load_pattern(pattern: &Pattern, cache: &AssetCache<'_>, faults: &mut Vec<Diag
 }
 
 fn load_image(image: &ImagePattern, cache: &AssetCache<'_>, faults: &mut Vec<Diagnostic>) {
-    if image.picture.get().is_some() {
+    load_picture(&image.picture, &image.path, image.span, cache, faults);
+}
+
+fn load_picture(
+    picture: &Picture,
+    path: &Path,
+    span: Span,
+    cache: &AssetCache<'_>,
+    faults: &mut Vec<Diagnostic>,
+) {
+    if picture.get().is_some() {
         return;
     }
-    match cache.image(&image.path) {
-        Ok(picture) => image.picture.set(picture),
+    match cache.image(path) {
+        Ok(image) => picture.set(image),
         Err(error) => {
-            let fault = picture_fault(&image.path, &error);
-            if !faults.iter().any(|f| f.span == Some(image.span) && f.code == fault.0) {
-                faults.push(Diagnostic::new(fault.0, image.span, fault.1));
+            let fault = picture_fault(path, &error);
+            if !faults.iter().any(|f| f.span == Some(span) && f.code == fault.0) {
+                faults.push(Diagnostic::new(fault.0, span, fault.1));
             }
         }
     }

@@ -6,8 +6,8 @@ use crate::lang::kinds::{lights, models, objects, settings, shapes, skins, solid
 use crate::lang::table::Kind;
 use crate::lang::value::{self, Given, Value};
 use crate::scene::{
-    Along, Camera, Fresnel, Light, LightSource, Lobe, Material, MeshSource, Projection, Radius, Shape, Sky,
-    Surface, Texture,
+    Along, Camera, Fresnel, Light, LightSource, Lobe, Material, MeshSource, Projection, Radius, Rgb, Shape,
+    Sky, Surface, Texture,
 };
 use glam::DVec3;
 use std::sync::Arc;
@@ -159,7 +159,10 @@ pub fn light(light: &Light, new: &[Given]) -> Vec<Part> {
             vec![one("area", Value::Object(object.clone())), one("radiance", vector(*radiance))]
         }
         LightSource::Sky(Sky::Uniform(colour)) => vec![one("sky", vector(*colour))],
-        LightSource::Sky(Sky::Image { path, .. }) => vec![one("sky", Value::text(&path.to_string_lossy()))],
+        // A path is joined to its folder already, and must not be joined again: an even sky stands for the picture meanwhile.
+        LightSource::Sky(Sky::Image { factor, .. }) => {
+            vec![one("sky", vector(Rgb::ONE)), one("radiance", vector(*factor))]
+        }
     };
     let old_source = source[0].0;
     let replaced = new.iter().any(|g| lights::SOURCES.contains(&&*g.name) && &*g.name != old_source);
