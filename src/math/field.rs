@@ -14,6 +14,7 @@ mod quadratic;
 mod rules;
 mod run;
 mod simplify;
+mod straight;
 
 pub use builder::{FieldBuilder, Label, TableId, TooLarge};
 pub use enclose::{Choice, Enclosed, Encloser};
@@ -24,6 +25,7 @@ pub use quadratic::Quadratic;
 pub use run::SMALL;
 
 use std::sync::Arc;
+use straight::Straight;
 
 /// A function with data of its own that tapes hold: a curve.
 pub trait Held: std::fmt::Debug + Send + Sync {
@@ -52,7 +54,7 @@ pub type CallN = fn(&[f64], &mut [f64]);
 /// Most inputs, and most outputs, that a [`CallN`] may have.
 pub const MAX_CALL: usize = 16;
 
-/// What is known of a function that a tape calls, so that it can be bounded over intervals too. The evaluation of points does not read it.
+/// What is known of a function that a tape calls, so that it can be bounded over intervals too. The evaluation of points reads it of sines and cosines alone.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[allow(missing_docs, reason = "each is named for its function")]
 pub enum Rule {
@@ -268,6 +270,8 @@ pub struct Field {
     held: Arc<[Arc<dyn Held>]>,
     outputs: Arc<[Register]>,
     turn_limit: u32,
+    /// The same made ready for points, where that can be.
+    straight: Option<Arc<Straight>>,
 }
 
 impl Default for Field {
@@ -281,11 +285,18 @@ impl Default for Field {
             held: Arc::new([]),
             outputs: Arc::new([]),
             turn_limit: 0,
+            straight: None,
         }
     }
 }
 
 impl Field {
+    /// The same, with what is made from it.
+    fn ready(mut self) -> Field {
+        self.straight = Straight::new(&self).map(Arc::new);
+        self
+    }
+
     /// How many numbers it takes.
     pub fn n_inputs(&self) -> usize {
         self.n_inputs

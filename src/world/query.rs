@@ -132,7 +132,9 @@ impl<'w> Query<'w> {
     /// A shape of a group, in its own space.
     #[inline]
     fn meet(&mut self, shape: &Shape, group: &Group, position: usize, inside: &Local) {
-        if let Some(meet) = shape.meet(&inside.ray, self.limit * inside.per_world) {
+        let limit = self.limit * inside.per_world;
+        let met = if self.any { shape.meet_any(&inside.ray, limit) } else { shape.meet(&inside.ray, limit) };
+        if let Some(meet) = met {
             let part = Csg::part_number(&meet);
             let number = group.number_of(position as u32);
             let id = PrimitiveId { instance: inside.instance, shape: number, part };

@@ -254,7 +254,9 @@ impl FieldBuilder {
             held: self.held.into(),
             outputs: outputs.into(),
             turn_limit: self.turn_limit,
-        })
+            straight: None,
+        }
+        .ready())
     }
 
     fn push(&mut self, op: Op) {

@@ -12,6 +12,16 @@ thread_local! {
 }
 
 pub(super) fn eval(field: &Field, inputs: &[f64], outputs: &mut [f64]) -> Result<(), Fault> {
+    if let Some(straight) = &field.straight
+        && straight.run(field, inputs, outputs)
+    {
+        return Ok(());
+    }
+    step_by_step(field, inputs, outputs)
+}
+
+/// As it was written, with a look for faults after each step.
+fn step_by_step(field: &Field, inputs: &[f64], outputs: &mut [f64]) -> Result<(), Fault> {
     let n = field.initial.len();
     if n <= SMALL {
         let mut registers = [0.0; SMALL];
@@ -62,7 +72,7 @@ fn steps(field: &Field, r: &mut [f64]) -> Result<(), (usize, FaultKind)> {
 
 /// One step; where it jumps to, if it jumps.
 #[inline(always)]
-fn step(field: &Field, op: Op, r: &mut [f64]) -> Result<Option<u32>, FaultKind> {
+pub(super) fn step(field: &Field, op: Op, r: &mut [f64]) -> Result<Option<u32>, FaultKind> {
     let get = |register: Register| r[register.index()];
     match op {
         Op::Unary(op, to, a) => r[to.index()] = unary(op, get(a))?,

@@ -32,6 +32,7 @@ impl Field {
             sites: (0..ops.len()).filter(kept).map(|i| self.sites[i]).collect(),
             ..self.clone()
         }
+        .ready()
     }
 
     /// Which steps the outputs depend on, and those that may stop the tape on the way to them.
@@ -66,7 +67,7 @@ fn decided(op: Op, choice: Choice) -> Op {
 }
 
 /// The registers that a step writes: the first, and how many.
-fn written(op: &Op) -> (Register, usize) {
+pub(super) fn written(op: &Op) -> (Register, usize) {
     match *op {
         Op::Unary(_, to, _) | Op::Binary(_, to, ..) | Op::Select(to, ..) => (to, 1),
         Op::Call1(_, _, to, _) | Op::Call2(_, _, to, ..) | Op::Table(to, ..) | Op::Gather { to, .. } => {
@@ -86,7 +87,8 @@ pub(super) fn reads(op: &Op, register: Register) -> usize {
     count
 }
 
-fn each_read(op: &Op, mut read: impl FnMut(Register)) {
+/// Calls `read` with each register that a step reads.
+pub(super) fn each_read(op: &Op, mut read: impl FnMut(Register)) {
     let row = |first: Register, count: usize| (0..count).map(move |i| Register(first.0 + i as u16));
     match *op {
         Op::Unary(_, _, a) | Op::Call1(_, _, _, a) | Op::CheckFinite(a) => read(a),

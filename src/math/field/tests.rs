@@ -1,5 +1,5 @@
 use super::*;
-use crate::math::elementary::{ln, sin};
+use crate::math::elementary::{cos, ln, sin};
 
 fn value(field: &Field, inputs: &[f64]) -> Result<f64, Fault> {
     let mut out = [f64::NAN];
@@ -51,6 +51,62 @@ fn infinity_may_be_compared_with_but_not_given_back() {
     let inf = b.constant(f64::INFINITY);
     let field = b.finish(&[inf]).unwrap();
     assert_eq!(value(&field, &[]).unwrap_err().kind, FaultKind::NotFinite);
+}
+
+#[test]
+fn made_ready_a_tape_gives_the_bits_and_the_faults_of_its_steps() {
+    let mut b = FieldBuilder::new(3);
+    let [x, y, z] = [0, 1, 2].map(|i| b.input(i));
+    b.site(1);
+    // Cosine before sine, one of them alone, and both of two numbers.
+    let (c, lone, s) = (b.call1(cos, Rule::Cos, x), b.call1(sin, Rule::Sin, y), b.call1(sin, Rule::Sin, x));
+    let (t, u) = (b.call1(sin, Rule::Sin, z), b.call1(cos, Rule::Cos, z));
+    b.site(2);
+    let root = b.unary(Unary::Sqrt, y);
+    b.site(3);
+    let quotient = b.binary(Binary::Div, c, z);
+    // Hidden behind a maximum and a divisor, an infinity is a fault all the same.
+    let hidden = b.binary(Binary::Max, quotient, s);
+    b.site(4);
+    let below = b.binary(Binary::Div, lone, hidden);
+    let floor = b.unary(Unary::Floor, below);
+    let least = b.binary(Binary::Min, floor, u);
+    let sum = [root, t, least].into_iter().reduce(|a, x| b.binary(Binary::Sub, a, x)).unwrap();
+    let field = b.finish(&[sum, s, c]).unwrap();
+    assert!(field.straight.is_some());
+    let slow = Field { straight: None, ..field.clone() };
+    let mut random = crate::math::random::Random::new(7);
+    let mut faults = 0;
+    for case in 0..20_000 {
+        let mut input = || match random.below(12) {
+            0 => 0.0,
+            1 => 1e-320 * random.sign(),
+            2 => random.between(-1e-8, 1e-8),
+            3 => random.between(-1e9, 1e9),
+            _ => random.between(-1.0, 9.0),
+        };
+        let inputs = [input(), input(), input()];
+        let run = |field: &Field| {
+            let mut out = [7.0; 3];
+            let result = field.eval(&inputs, &mut out);
+            (result, out.map(f64::to_bits))
+        };
+        assert_eq!(run(&field), run(&slow), "case {case}: {inputs:?}");
+        faults += u32::from(run(&field).0.is_err());
+    }
+    assert!(faults > 1000, "{faults}");
+}
+
+#[test]
+fn sine_and_cosine_have_the_same_bits_together_and_alone() {
+    let mut random = crate::math::random::Random::new(3);
+    for exponent in -40..40 {
+        for _ in 0..2000 {
+            let x = random.between(-2.0, 2.0) * 2f64.powi(exponent);
+            let (s, c) = crate::math::elementary::sin_cos(x);
+            assert_eq!((s.to_bits(), c.to_bits()), (sin(x).to_bits(), cos(x).to_bits()), "{x:e}");
+        }
+    }
 }
 
 /// Σ i for i in 0..n, as a loop.

@@ -36,6 +36,8 @@ pub struct Csg {
     parts: Vec<Leaf>,
     /// Over the parts.
     tree: Tree,
+    /// Their boxes where these are so few that asking each takes less; else none.
+    boxes: Box<[Aabb]>,
     bounds: Aabb,
 }
 

@@ -25,7 +25,7 @@ use crate::scene::SampledFunction;
 use crate::world::texture::TextureFault;
 use cells::Cells;
 use glam::{DVec2, DVec3};
-pub use search::{Event, Window};
+pub use search::{Event, NOWHERE, Window};
 use std::cell::Cell;
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
@@ -106,10 +106,19 @@ impl Implicit {
     }
 
     pub(super) fn meet(&self, ray: &LocalRay, limit: f64) -> Option<Meet> {
+        self.first(ray, Window { from: 0.0, to: limit, rough: NOWHERE })
+    }
+
+    /// Any meeting in (0, limit].
+    pub(super) fn meet_any(&self, ray: &LocalRay, limit: f64) -> Option<Meet> {
+        self.first(ray, Window { from: 0.0, to: limit, rough: (0.0, limit) })
+    }
+
+    fn first(&self, ray: &LocalRay, window: Window) -> Option<Meet> {
         let mut first = None;
-        search::each_event(self, ray, Window { from: 0.0, to: limit }, |event| match event {
+        search::each_event(self, ray, window, |event| match event {
             Event::Start(_) => true,
-            Event::Meet(meet) => {
+            Event::Meet(meet, _) => {
                 first = Some(meet);
                 false
             }
@@ -119,7 +128,7 @@ impl Implicit {
 
     pub(super) fn crossings(&self, ray: &LocalRay, out: &mut Vec<Meet>) {
         self.each_crossing(ray, Window::AHEAD, |event| {
-            if let Event::Meet(meet) = event {
+            if let Event::Meet(meet, _) = event {
                 out.push(meet);
             }
             true
@@ -130,8 +139,8 @@ impl Implicit {
     pub(super) fn each_crossing(&self, ray: &LocalRay, window: Window, mut found: impl FnMut(Event) -> bool) {
         search::each_event(self, ray, window, |event| match event {
             // Meetings of other kinds do not turn inside to outside: they stand twice.
-            Event::Meet(meet) if meet.face >= UNDEFINED => found(event) && found(event),
-            Event::Meet(_) | Event::Start(_) => found(event),
+            Event::Meet(meet, _) if meet.face >= UNDEFINED => found(event) && found(event),
+            Event::Meet(..) | Event::Start(_) => found(event),
         });
     }
 

@@ -155,6 +155,21 @@ impl Shape {
         }
     }
 
+    /// A meeting in (0, limit], found where [`Shape::meet`] finds one, but perhaps another, or not quite where it is.
+    #[inline]
+    pub fn meet_any(&self, ray: &LocalRay, limit: f64) -> Option<Meet> {
+        match self {
+            Shape::Csg(s) => s.meet_any(ray, limit),
+            Shape::Implicit(s) => s.meet_any(ray, limit),
+            Shape::Sphere(_) | Shape::Plane(_) | Shape::Disc(_) | Shape::Rect(_) | Shape::Cuboid(_) => {
+                self.meet(ray, limit)
+            }
+            Shape::Cone(_) | Shape::Torus(_) | Shape::Triangle(_) | Shape::Patch(_) | Shape::Swept(_) => {
+                self.meet(ray, limit)
+            }
+        }
+    }
+
     /// Every meeting with a finite t > 0, appended in ascending order; the first is the meeting that [`Shape::meet`] gives, to the bit.
     ///
     /// For a closed shape each passes from outside to inside or back, and where the ray only touches it the meeting stands twice.

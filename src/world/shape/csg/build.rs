@@ -7,6 +7,9 @@ use crate::scene::CsgOp;
 use crate::world::bvh::Tree;
 use crate::world::shape::EVERYTHING;
 
+/// Up to so many parts are asked one by one: a walk down a tree takes a ray longer than ten boxes.
+const FEW: usize = 4;
+
 /// Something to be put together.
 pub enum Part {
     /// A solid: what it is, its transform to the space of the whole, its material's number, where it was written.
@@ -23,11 +26,15 @@ impl Csg {
             outside: Vec::new(),
             parts: Vec::new(),
             tree: Tree::default(),
+            boxes: Box::default(),
             bounds: Aabb::EMPTY,
         };
         csg.bounds = csg.add_whole(op, inverse, parts, Place { of: None, is_first: false }, false);
         csg.outside = csg.tallies_outside();
         csg.tree = Tree::build(csg.parts.len(), |i| csg.parts[i].bounds());
+        if csg.parts.len() <= FEW {
+            csg.boxes = csg.parts.iter().map(Leaf::bounds).collect();
+        }
         csg
     }
 

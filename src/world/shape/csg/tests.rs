@@ -154,6 +154,11 @@ fn assert_is_what_points_say(whole: &Csg, inside: impl Fn(DVec3) -> bool, cases:
         whole.crossings(&ray, &mut all);
         assert_eq!(whole.starts_inside(&ray), inside(origin), "case {case}");
         assert_eq!(all.len() % 2 == 1, inside(origin), "case {case}");
+        let first = |limit: f64| all.first().filter(|meet| meet.t <= limit).map(|meet| (meet.t, meet.part));
+        for limit in [f64::MAX, 1.0, 0.3, 0.01] {
+            assert_eq!(whole.meet(&ray, limit).map(|meet| (meet.t, meet.part)), first(limit), "case {case}");
+            assert_eq!(whole.meet_any(&ray, limit).is_some(), first(limit).is_some(), "case {case}");
+        }
         let mut within = inside(origin);
         let mut before = 0.0;
         for meet in all.iter().copied().chain([Meet::at(10.0)]) {

@@ -2,7 +2,7 @@
 
 use super::{COINCIDENT, Csg, Solid, Tally, doubt, reach};
 use crate::world::bvh::clip;
-use crate::world::shape::implicit::{Event, Window};
+use crate::world::shape::implicit::{Event, NOWHERE, Window};
 use crate::world::shape::{LocalRay, Meet, Shape, Surface};
 use std::cell::Cell;
 
@@ -82,8 +82,13 @@ impl<F: FnMut(&Turn<'_>) -> bool> Steps<'_, F> {
         !self.stopped
     }
 
-    /// Passes what has come together.
-    fn pass(&mut self) {
+    /// Whether a meeting still to come may be at the place of this one, which is of a slow part and stands alone up to `clear` there.
+    fn may_join(&self, meet: &Meet, clear: f64, next: Option<&Meet>) -> bool {
+        clear <= meet.t || next.is_some_and(|next| next.t - meet.t <= APART * reach(self.ray, next.t))
+    }
+
+    /// Passes what has come together; false once nothing more is wanted.
+    fn pass(&mut self) -> bool {
         let Walk { tallies, inside, together, .. } = &mut *self.walk;
         if let Some(mut at) = self.csg.pass(together, tallies, inside) {
             if together.len() > 1 {
@@ -92,14 +97,24 @@ impl<F: FnMut(&Turn<'_>) -> bool> Steps<'_, F> {
             self.stopped |= !(self.found)(&Turn { at, together });
         }
         together.clear();
+        !self.stopped
     }
 }
 
 impl Csg {
     /// The nearest meeting in (0, limit].
     pub fn meet(&self, ray: &LocalRay, limit: f64) -> Option<Meet> {
+        self.first(ray, limit, false)
+    }
+
+    /// Any meeting in (0, limit].
+    pub fn meet_any(&self, ray: &LocalRay, limit: f64) -> Option<Meet> {
+        self.first(ray, limit, true)
+    }
+
+    fn first(&self, ray: &LocalRay, limit: f64, any: bool) -> Option<Meet> {
         let mut first = None;
-        self.each_turn(ray, limit, |turn| {
+        self.each_turn(ray, limit, any, |turn| {
             first = Some(turn.at);
             false
         });
@@ -108,7 +123,7 @@ impl Csg {
 
     /// Every meeting, in order.
     pub fn crossings(&self, ray: &LocalRay, out: &mut Vec<Meet>) {
-        self.each_turn(ray, f64::MAX, |turn| {
+        self.each_turn(ray, f64::MAX, false, |turn| {
             out.push(turn.at);
             true
         });
@@ -119,9 +134,9 @@ impl Csg {
         let mut walk = SPARE.take();
         self.gather(ray, &mut walk);
         if let Some(number) = walk.slow
-            && self.matters(number, &mut walk)
+            && self.matters(number, &walk)
         {
-            self.each_of_slow(number, ray, Window { from: 0.0, to: 0.0 }, |event| {
+            self.each_of_slow(number, ray, Window { from: 0.0, to: 0.0, rough: NOWHERE }, |event| {
                 if let Event::Start(true) = event {
                     self.turn(number, &mut walk.tallies, &mut walk.inside);
                 }
@@ -137,7 +152,7 @@ impl Csg {
     pub(super) fn spread(&self, ray: &LocalRay, meet: &Meet, surface: &Surface) -> f64 {
         let steepness = surface.geometric_normal.dot(ray.direction).abs();
         let mut spread = 0.0f64;
-        self.each_turn(ray, f64::MAX, |turn| {
+        self.each_turn(ray, f64::MAX, false, |turn| {
             let is_it = turn.at.t == meet.t && turn.at.part == meet.part;
             if is_it {
                 for other in turn.together {
@@ -152,20 +167,26 @@ impl Csg {
         spread
     }
 
-    /// Calls `found` at each place up to the limit where the whole is entered or left, until it says false.
-    fn each_turn(&self, ray: &LocalRay, limit: f64, found: impl FnMut(&Turn<'_>) -> bool) {
+    /// Calls `found` at each place up to the limit where the whole is entered or left, until it says false. Where any will do, the first may be
+    /// told beside where it is.
+    fn each_turn(&self, ray: &LocalRay, limit: f64, any: bool, found: impl FnMut(&Turn<'_>) -> bool) {
         let mut walk = SPARE.take();
         self.gather(ray, &mut walk);
-        let slow = walk.slow.inspect(|number| self.find_windows(*number, ray, limit, &mut walk));
+        let slow = walk.slow.inspect(|number| {
+            self.find_windows(*number, ray, limit, &mut walk);
+            if !any {
+                walk.windows.iter_mut().for_each(|window| window.rough = NOWHERE);
+            }
+        });
         let meetings = std::mem::take(&mut walk.meetings);
         let windows = std::mem::take(&mut walk.windows);
         let mut steps = Steps { csg: self, ray, limit, walk: &mut walk, found, stopped: false };
         let mut rest = 0;
         for (number, window) in slow.into_iter().flat_map(|number| windows.iter().map(move |w| (number, w))) {
             self.each_of_slow(number, ray, *window, |event| {
-                let (from, meet) = match event {
-                    Event::Start(inside) => (window.from, Err(inside)),
-                    Event::Meet(meet) => (meet.t, Ok(meet)),
+                let from = match event {
+                    Event::Start(_) => window.from,
+                    Event::Meet(meet, _) => meet.t,
                 };
                 let before = |other: &Meet| other.t < from || (other.t == from && other.part < number);
                 while let Some(other) = meetings.get(rest).filter(|other| before(other)) {
@@ -174,9 +195,11 @@ impl Csg {
                         return false;
                     }
                 }
-                match meet {
-                    Ok(meet) => steps.meet(meet),
-                    Err(inside) => steps.start(number, inside),
+                match event {
+                    Event::Start(inside) => steps.start(number, inside),
+                    Event::Meet(meet, clear) => {
+                        steps.meet(meet) && (steps.may_join(&meet, clear, meetings.get(rest)) || steps.pass())
+                    }
                 }
             });
             if steps.stopped {
@@ -206,20 +229,32 @@ impl Csg {
         else {
             return;
         };
-        let own = Window { from: window.from * factor, to: window.to * factor };
+        let rough = (window.rough.0 * factor, window.rough.1 * factor);
+        let own = Window { from: window.from * factor, to: window.to * factor, rough };
         implicit.each_crossing(&local, own, |event| match event {
             Event::Start(_) => found(event),
-            Event::Meet(meet) => found(Event::Meet(Meet { t: meet.t / factor, part: number, ..meet })),
+            Event::Meet(meet, clear) => {
+                let meet = Meet { t: meet.t / factor, part: number, ..meet };
+                found(Event::Meet(meet, clear / factor))
+            }
         });
     }
 
     /// Whether the whole changes where a part is turned.
-    fn matters(&self, number: u32, walk: &mut Walk) -> bool {
-        let before = self.operations[0].holds(walk.tallies[0]);
-        self.turn(number, &mut walk.tallies, &mut walk.inside);
-        let after = self.operations[0].holds(walk.tallies[0]);
-        self.turn(number, &mut walk.tallies, &mut walk.inside);
-        before != after
+    fn matters(&self, number: u32, walk: &Walk) -> bool {
+        let mut entered = !walk.inside[number as usize];
+        let mut place = self.parts[number as usize].place;
+        while let Some(of) = place.of {
+            let (operation, mut tally) = (&self.operations[of as usize], walk.tallies[of as usize]);
+            let was = operation.holds(tally);
+            operation.count(&mut tally, place.is_first, entered);
+            entered = operation.holds(tally);
+            if entered == was {
+                return false;
+            }
+            place = operation.place;
+        }
+        true
     }
 
     /// The windows in which a slow part matters, by the meetings of the others: each reaches so far out that what coincides with a meeting at
@@ -234,12 +269,17 @@ impl Csg {
             let to = next.map_or(f64::MAX, |meet| meet.t);
             is_after_all = next.is_none();
             if self.matters(number, walk) {
+                let apart = |t: f64| APART * reach(ray, t);
                 let window = Window {
-                    from: (from - APART * reach(ray, from)).max(0.0),
-                    to: (to + APART * reach(ray, to)).min(limit + APART * reach(ray, limit)),
+                    from: (from - apart(from)).max(0.0),
+                    to: (to + apart(to)).min(limit + apart(limit)),
+                    // So far from other meetings that nothing coincides, twice over for rounding.
+                    rough: (from + 2.0 * apart(from), (to - 2.0 * apart(to)).min(limit)),
                 };
                 match walk.windows.last_mut() {
-                    Some(last) if window.from <= last.to => last.to = window.to,
+                    Some(last) if window.from <= last.to => {
+                        (last.to, last.rough) = (window.to, NOWHERE);
+                    }
                     _ => walk.windows.push(window),
                 }
             }
@@ -270,12 +310,19 @@ impl Csg {
         if far < 0.0 {
             return;
         }
-        self.tree.traverse(ray.origin, ray.direction, far, |range, t_max| {
-            for position in range {
-                self.gather_part(self.tree.order()[position], ray, walk);
+        for (number, part) in self.boxes.iter().enumerate() {
+            if clip(part, ray.origin, ray.direction, far).is_some() {
+                self.gather_part(number as u32, ray, walk);
             }
-            t_max
-        });
+        }
+        if self.boxes.is_empty() {
+            self.tree.traverse(ray.origin, ray.direction, far, |range, t_max| {
+                for position in range {
+                    self.gather_part(self.tree.order()[position], ray, walk);
+                }
+                t_max
+            });
+        }
         if walk.meetings.len() > 1 {
             walk.meetings.sort_by(|a, b| a.t.total_cmp(&b.t).then(a.part.cmp(&b.part)));
         }

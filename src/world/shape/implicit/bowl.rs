@@ -33,15 +33,15 @@ impl Shape {
         match self {
             Shape::Bowl(bowl) => bowl.zeros(origin, direction, part),
             Shape::Fold(sides, greater) => {
-                let [a, b] = [0, 1].map(|i| sides[i].zeros(origin, direction, part));
-                // The side that is certainly below 0 is never the greater where that is 0.
-                let is_passed = |said: &Said| matches!(said, Said::Nowhere(negative) if negative == greater);
-                let decides = |said: &Said| matches!(said, Said::Nowhere(negative) if negative != greater);
-                match (&a, &b) {
-                    _ if decides(&a) || decides(&b) => Said::Nowhere(!greater),
-                    _ if is_passed(&a) => b,
-                    _ if is_passed(&b) => a,
-                    _ => Said::Unclear,
+                // The side that is certainly below 0 is never the greater where that is 0; one above 0 decides.
+                match sides[0].zeros(origin, direction, part) {
+                    Said::Nowhere(negative) if negative != *greater => Said::Nowhere(negative),
+                    Said::Nowhere(_) => sides[1].zeros(origin, direction, part),
+                    first => match sides[1].zeros(origin, direction, part) {
+                        Said::Nowhere(negative) if negative != *greater => Said::Nowhere(negative),
+                        Said::Nowhere(_) => first,
+                        Said::Steady(..) | Said::Unclear => Said::Unclear,
+                    },
                 }
             }
         }

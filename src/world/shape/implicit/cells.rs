@@ -81,8 +81,16 @@ impl Cells {
         between: (f64, f64),
         visit: &mut impl FnMut(f64, f64, Visited<'_>) -> bool,
     ) {
-        let walk = Walk { cells: self, origin, direction, inverse: direction.recip() };
-        walk.enter(self.root, &Place::of(bounds), None, between, visit);
+        let backward = direction.is_negative_bitmask() as usize;
+        let walk = Walk { cells: self, origin, direction, inverse: direction.recip(), backward };
+        match self.root {
+            Cell::Parts(parts) => {
+                walk.divide(&self.parts[parts as usize], Place::of(bounds), between, visit);
+            }
+            whole => {
+                walk.enter(whole, &Place::of(bounds), 0, between, visit);
+            }
+        }
     }
 }
 
@@ -115,15 +123,18 @@ struct Walk<'c> {
     origin: DVec3,
     direction: DVec3,
     inverse: DVec3,
+    /// The axes along which it goes down, by bits.
+    backward: usize,
 }
 
 impl Walk<'_> {
+    /// Goes into a part of a place.
     #[inline(always)]
     fn enter(
         &self,
         cell: Cell,
         place: &Place,
-        part: Option<usize>,
+        part: usize,
         (from, to): (f64, f64),
         visit: &mut impl FnMut(f64, f64, Visited<'_>) -> bool,
     ) -> bool {
@@ -131,8 +142,7 @@ impl Walk<'_> {
             Cell::Empty(negative) => visit(from, to, Visited::Empty(negative)),
             Cell::Leaf(leaf) => visit(from, to, Visited::Leaf(&self.cells.leaves[leaf as usize])),
             Cell::Parts(parts) => {
-                let place = part.map_or(*place, |part| place.octant(part));
-                self.divide(&self.cells.parts[parts as usize], place, (from, to), visit)
+                self.divide(&self.cells.parts[parts as usize], place.octant(part), (from, to), visit)
             }
         }
     }
@@ -144,14 +154,19 @@ impl Walk<'_> {
         (from, to): (f64, f64),
         visit: &mut impl FnMut(f64, f64, Visited<'_>) -> bool,
     ) -> bool {
-        let cuts: [f64; 3] = std::array::from_fn(|axis| self.cut(axis, place.middle[axis]));
-        let backward = self.direction.is_negative_bitmask() as usize;
-        let mut at = from;
+        let mut cuts: [f64; 3] = std::array::from_fn(|axis| self.cut(axis, place.middle[axis]));
+        let (mut at, mut beyond) = (from, 0);
         loop {
-            let beyond = (0..3).fold(0, |bits, axis| bits | (usize::from(at >= cuts[axis]) << axis));
-            let end = (0..3).filter(|axis| beyond >> axis & 1 == 0).fold(to, |end, axis| end.min(cuts[axis]));
-            let part = beyond ^ backward;
-            if !self.enter(parts[part], &place, Some(part), (at, end), visit) {
+            let mut end = to;
+            for (axis, cut) in cuts.iter_mut().enumerate() {
+                // A plane is passed once; then it is nowhere ahead.
+                let is_passed = at >= *cut;
+                beyond |= usize::from(is_passed) << axis;
+                *cut = if is_passed { f64::INFINITY } else { *cut };
+                end = if *cut < end { *cut } else { end };
+            }
+            let part = beyond ^ self.backward;
+            if !self.enter(parts[part], &place, part, (at, end), visit) {
                 return false;
             }
             if !(end < to) {

@@ -39,8 +39,8 @@ struct Spare {
 pub enum Event {
     /// The beginning; whether it is in the solid. Comes once and first.
     Start(bool),
-    /// A meeting.
-    Meet(Meet),
+    /// A meeting, and up to where no other follows: its own distance where that is not known.
+    Meet(Meet, f64),
 }
 
 /// A part of a ray, by its distances.
@@ -50,11 +50,16 @@ pub struct Window {
     pub from: f64,
     /// What is met beyond need not be told.
     pub to: f64,
+    /// Between these distances a crossing is told at any place near it of which no other lies between.
+    pub rough: (f64, f64),
 }
+
+/// Nowhere, where every crossing is told where it is.
+pub const NOWHERE: (f64, f64) = (f64::INFINITY, f64::NEG_INFINITY);
 
 impl Window {
     /// All that is ahead.
-    pub const AHEAD: Window = Window { from: 0.0, to: f64::MAX };
+    pub const AHEAD: Window = Window { from: 0.0, to: f64::MAX, rough: NOWHERE };
 }
 
 /// A ray near the box.
@@ -96,10 +101,10 @@ pub(super) fn each_event(
         found(Event::Start(false));
         return;
     };
-    let mut search = Search::new(shape, &near, SPARE.take());
+    let mut search = Search::new(shape, &near, window.rough, SPARE.take());
     search.run(window.to, &mut |event| match event {
         Event::Start(_) => found(event),
-        Event::Meet(meet) => {
+        Event::Meet(meet, _) => {
             !(ahead(meet.t) && meet.t >= window.from) || (meet.t <= window.to && found(event))
         }
     });
@@ -120,6 +125,8 @@ struct Hidden {
 struct Search<'s> {
     shape: &'s Implicit,
     near: &'s Near,
+    /// Where crossings need not be found exactly.
+    rough: (f64, f64),
     spare: Spare,
     evaluations: u32,
     /// Gives f's bits where the search is.
@@ -135,9 +142,20 @@ struct Search<'s> {
 type Found<'f> = &'f mut dyn FnMut(Event) -> bool;
 
 impl<'s> Search<'s> {
-    fn new(shape: &'s Implicit, near: &'s Near, spare: Spare) -> Self {
+    fn new(shape: &'s Implicit, near: &'s Near, rough: (f64, f64), spare: Spare) -> Self {
         let (last, field) = ((f64::NAN, f64::NAN), &shape.function.field);
-        Search { shape, near, spare, evaluations: 0, field, inside: None, hidden: None, last, stopped: false }
+        Search {
+            shape,
+            near,
+            rough,
+            spare,
+            evaluations: 0,
+            field,
+            inside: None,
+            hidden: None,
+            last,
+            stopped: false,
+        }
     }
 
     fn point(&self, s: f64) -> DVec3 {
@@ -164,8 +182,13 @@ impl<'s> Search<'s> {
     }
 
     fn tell(&mut self, s: f64, face: u32, found: Found<'_>) {
+        self.tell_until(s, face, s, found);
+    }
+
+    /// The same where no other follows up to `clear`.
+    fn tell_until(&mut self, s: f64, face: u32, clear: f64, found: Found<'_>) {
         let meet = Meet { t: self.near.start + s, face, ..Meet::default() };
-        self.stopped |= !found(Event::Meet(meet));
+        self.stopped |= !found(Event::Meet(meet, self.near.start + clear));
     }
 
     /// That f is undefined, or cannot be followed, from here on.
@@ -201,6 +224,11 @@ impl<'s> Search<'s> {
 
     /// Comes to a place where f has a sign: a meeting where it is not the last one.
     fn come(&mut self, s: f64, negative: bool, found: Found<'_>) {
+        self.come_until(s, negative, s, found);
+    }
+
+    /// The same where the sign stays up to `clear`.
+    fn come_until(&mut self, s: f64, negative: bool, clear: f64, found: Found<'_>) {
         let was = self.inside.replace(negative);
         match (was, self.near.entered) {
             (None, entered) => {
@@ -209,7 +237,7 @@ impl<'s> Search<'s> {
                     self.tell(self.near.from, FIRST_CUT + face, found);
                 }
             }
-            (Some(was), _) if was != negative => self.tell(s, ON_SURFACE, found),
+            (Some(was), _) if was != negative => self.tell_until(s, ON_SURFACE, clear, found),
             (Some(_), _) => {}
         }
     }
@@ -308,14 +336,16 @@ impl<'s> Search<'s> {
     /// A piece over which f only rises, or only falls, and is near a line.
     fn monotone(&mut self, part: &Part, along: &Along, found: Found<'_>) {
         let Some((start, end)) = self.ends(part, found) else { return };
-        if start != end {
+        if start != end && self.is_rough(part) {
+            self.come_until(part.from, end, part.to, found);
+        } else if start != end {
             let tolerance = self.tolerance(part);
             let guess = bracket::Guess { at: along.zero(), slope: along.slope, bend: along.bend };
             let root = bracket::secant(part.from, part.to, guess, tolerance, |s| {
                 self.evaluations += 1;
                 self.value_at(s)
             });
-            self.come(root, end, found);
+            self.come_until(root, end, part.to, found);
         }
     }
 
@@ -325,8 +355,14 @@ impl<'s> Search<'s> {
         if start != end {
             let (a, b) = ((part.from, self.value(part.from)), (part.to, self.value(part.to)));
             let root = self.bracketed(a, b);
-            self.come(root, end, found);
+            self.come_until(root, end, part.to, found);
         }
+    }
+
+    /// Whether any place in a part will do.
+    fn is_rough(&self, part: &Part) -> bool {
+        let place = |s: f64| self.near.start + s;
+        place(part.from) > self.rough.0 && place(part.to) < self.rough.1 && part.from < part.to
     }
 
     fn tolerance(&self, part: &Part) -> f64 {
