@@ -14,6 +14,9 @@ const STARTS: usize = 12;
 /// Another end is better when its sum is below this share of the first's.
 const CLEARLY: f64 = 1.0 - 1e-6;
 
+/// So many other starts that come to the same end, which no limit holds, are taken to say that there is no better one.
+const AGREED: usize = 2;
+
 /// The best of this descent and of others from elsewhere.
 pub fn better(problem: &Problem<'_>, first: Run, settings: &Settings) -> Run {
     if first.end != End::Minimum || first.state.sum <= bound(problem, &first.state) {
@@ -21,18 +24,27 @@ pub fn better(problem: &Problem<'_>, first: Run, settings: &Settings) -> Run {
     }
     let mut best = first;
     let mut random = Random::new(0);
+    let mut agreed = 0;
     for k in 0..STARTS {
         let start = problem.state(start(problem, &best.state, k, &mut random));
         let run = descend(problem, start, settings);
         let iterations = best.iterations + run.iterations;
         let largest_step = best.largest_step.max(run.largest_step);
         let wins = run.state.sum < CLEARLY * best.state.sum;
+        let agrees = !wins && CLEARLY * run.state.sum <= best.state.sum;
+        agreed = if wins { 0 } else { agreed + usize::from(agrees) };
         best = Run { iterations, largest_step, ..if wins { run } else { best } };
-        if best.end == End::Reached {
+        if best.end == End::Reached || (agreed >= AGREED && is_free(problem, &best.state)) {
             break;
         }
     }
     best
+}
+
+/// Whether no limit is in the way.
+fn is_free(problem: &Problem<'_>, state: &State) -> bool {
+    let gradient = problem.gradient(state);
+    problem.variables.iter().zip(&gradient).all(|(v, g)| !v.binds(&state.coordinates, *g))
 }
 
 fn start(problem: &Problem<'_>, state: &State, k: usize, random: &mut Random) -> Vec<f64> {
@@ -40,7 +52,7 @@ fn start(problem: &Problem<'_>, state: &State, k: usize, random: &mut Random) ->
     for v in &problem.variables {
         let value = match k {
             0 => problem.skeleton.rest()[v.coordinate],
-            1 => middle(v),
+            1 => middle(v, random),
             _ => anywhere(v, random),
         };
         coordinates[v.coordinate] = value.clamp(v.limits.low, v.limits.high);
@@ -48,9 +60,9 @@ fn start(problem: &Problem<'_>, state: &State, k: usize, random: &mut Random) ->
     coordinates
 }
 
-fn middle(v: &Variable) -> f64 {
+fn middle(v: &Variable, random: &mut Random) -> f64 {
     let middle = 0.5 * (v.limits.low + v.limits.high);
-    if middle.is_finite() { middle } else { 0.0 }
+    if middle.is_finite() { middle } else { anywhere(v, random) }
 }
 
 fn anywhere(v: &Variable, random: &mut Random) -> f64 {
