@@ -66,6 +66,12 @@ fn case_sets_are_as_hard_as_they_claim() {
         ("reach", "stretched toward it", "plain pseudo-inverse", 0.1),
         ("reach", "stretched toward it", "damping 0.1", 0.1),
         ("reach", "at the end of its reach", "damping 0.1", 1e-6),
+        ("skin", "twisted by up to half a turn", "matrices averaged", 0.9),
+        ("skin", "radius of a half twist", "linear", 0.9),
+        ("skin", "twisted by more than half a turn", "dual quaternions after stretch", 1.0),
+        ("skin", "at rest, far from the origin", "matrices averaged", 1.0),
+        ("skin", "by one bone that is stretched", "rigid dual quaternions", 0.5),
+        ("skin", "normals by one bone that is stretched", "matrices averaged", 0.5),
         ("fresnel", "into 1.1", "schlick, one side", 0.2),
         ("fresnel", "out of glass", "schlick, one side", 0.8),
     ];
@@ -92,6 +98,19 @@ fn case_sets_are_as_hard_as_they_claim() {
         let own = row(component, case, variant);
         let n = own.missed + own.spurious + own.not_finite;
         assert!(n >= least, "{component}, {case}, {variant}: {n} wrong, error {:e}", own.error_max);
+    }
+}
+
+#[test]
+fn dual_quaternions_keep_the_radius_of_a_twist_and_linear_blending_is_exact_elsewhere() {
+    for case in ["twisted by up to half a turn", "radius of a half twist"] {
+        let own = row("skin", case, "dual quaternions after stretch");
+        let most = if case.starts_with("radius") { 1e-12 } else { 0.5 };
+        assert!(own.error_max <= most, "{case}: {:e}", own.error_max);
+    }
+    for case in ["at rest, far from the origin", "by one bone that is stretched"] {
+        let own = row("skin", case, "dual quaternions after stretch");
+        assert!(own.error_max <= 1e-13, "{case}: {:e}", own.error_max);
     }
 }
 

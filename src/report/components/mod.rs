@@ -8,6 +8,7 @@ mod patches;
 mod planes;
 mod reach;
 mod roots;
+mod skins;
 mod spheres;
 mod tori;
 mod triangles;
@@ -22,7 +23,7 @@ pub const SEED: u64 = 20_240_607;
 pub type Component = fn(&Plan) -> Vec<Row>;
 
 /// All components by name, in the order of the report.
-pub const COMPONENTS: [(&str, Component); 11] = [
+pub const COMPONENTS: [(&str, Component); 12] = [
     ("curves", curves::rows),
     ("lengths", lengths::rows),
     ("roots", roots::rows),
@@ -34,6 +35,7 @@ pub const COMPONENTS: [(&str, Component); 11] = [
     ("implicits", implicits::rows),
     ("fresnel", fresnel::rows),
     ("reach", reach::rows),
+    ("skins", skins::rows),
 ];
 
 /// The spacing of f64 at x: the distance to the next number away from 0.

@@ -7,3 +7,4 @@ pub mod patches;
 pub mod reach;
 pub mod roots;
 pub mod shapes;
+pub mod skins;
