@@ -425,6 +425,33 @@ for i in 0..9 {
 }
 
 #[test]
+fn a_copy_of_a_model_takes_another_pose_or_moment_and_keeps_the_rest() {
+    let scene = r#"
+pose bent { of still.skeleton  waist <0, 0, 90> }
+let posed = still with { translate x  pose bent }
+assert(len(trace(posed, <-1.2, 1, 5>, <0, 0, -1>)) > 0, "in the pose, and moved")
+assert(len(trace(posed with { translate -x }, <-2.2, 1, 5>, <0, 0, -1>)) > 0, "the pose stays")
+let swaying = model { file "reed.gltf"  clip "sway"  at 0.5 }
+let later = still with { clip "sway"  at 1.5 }
+let again = later with { at 0.5 }
+for i in 0..9 {
+  let from = <-0.4 + i * 0.2, 2.2, 5>
+  assert(len(trace(swaying, from, -z)) == len(trace(again, from, -z)), "the clip stays")
+}
+assert(trace(swaying, <0, 2.2, 5>, -z) == trace(again, <0, 2.2, 5>, -z))
+assert(later.skeleton.neck.position != swaying.skeleton.neck.position)
+"#;
+    with_reed(&format!("{STILL}{scene} posed")).ogee("check a.scene").expect(0);
+    let unfit =
+        "pose bent { of still.skeleton  waist <0, 0, 90> } (still with { pose bent }) with { at 0.5 }";
+    let run = with_reed(&format!("{STILL}{unfit}")).ogee("check a.scene").expect(1);
+    assert!(run.stderr.contains("of another skeleton"), "{}", run.stderr);
+    let clip = r#"pose p { of still.skeleton  clip "sway"  at 1 }"#;
+    let run = with_reed(&format!("{STILL}{clip} still")).ogee("check a.scene").expect(1);
+    assert!(run.stderr.contains("a model's clip is the model's"), "{}", run.stderr);
+}
+
+#[test]
 fn a_pose_of_another_skeleton_is_refused() {
     let scene =
         r#"pose p { of (model { file "reed.gltf"  at 0.5 }).skeleton } model { file "reed.gltf"  pose p }"#;

@@ -59,31 +59,65 @@ pub static MODEL: Kind = Kind {
 };
 
 fn model(ctx: &mut dyn Context, block: Block) -> Outcome {
-    let (written, span) = (block.text("file").unwrap_or_default(), block.place("file"));
-    let path = existing_file(ctx, written, span)?;
-    let clip = match block.text("clip") {
-        None => block.has("at").then_some(0),
-        Some(name) => Some(clip(ctx, &path, span, name, block.place("clip"))?),
-    };
-    let asked = if block.has("clip") { block.place("clip") } else { block.place("at") };
-    let seconds = block.number("at").unwrap_or(0.0);
-    let moment = clip.map(|clip| Moment { clip, seconds, span: asked });
-    let source = ModelSource { path, span, moment, pose: None };
-    if !block.has("pose") && !block.has("show") {
-        return finish(ctx, &block, Shape::Model(Arc::new(source)));
-    }
-    let rig = rig(ctx, &source)?;
-    let pose = pose(ctx, &block, &rig)?;
-    if block.has("show") {
-        let stance = pose.map_or(Stance::Rest(rig), Stance::Posed);
-        return finish(ctx, &block, bones::drawn(&stance, block.span));
-    }
-    finish(ctx, &block, Shape::Model(Arc::new(ModelSource { pose, ..source })))
+    let shape = shape(ctx, &block, None)?;
+    finish(ctx, &block, shape)
 }
 
-/// The pose that a block gives, which must be one of the model's skeleton.
-fn pose(ctx: &mut dyn Context, block: &Block, rig: &Rig) -> Outcome<Option<Arc<Pose>>> {
-    let Some(Value::Pose(pose)) = block.value("pose") else { return Ok(None) };
+/// The model that a block's properties say, or, for those that it does not give, another one. A new `file` replaces all of that.
+pub fn shape(ctx: &mut dyn Context, block: &Block, from: Option<&ModelSource>) -> Outcome<Shape> {
+    let from = from.filter(|_| !block.has("file"));
+    let (path, span) = match from {
+        Some(source) => (source.path.clone(), source.span),
+        None => {
+            let (written, span) = (block.text("file").unwrap_or_default(), block.place("file"));
+            (existing_file(ctx, written, span)?, span)
+        }
+    };
+    let moment = moment(ctx, block, (&path, span), from.and_then(|source| source.moment))?;
+    let source = ModelSource { path, span, moment, pose: from.and_then(|source| source.pose.clone()) };
+    if !block.has("pose") && !block.has("show") && source.pose.is_none() {
+        return Ok(Shape::Model(Arc::new(source)));
+    }
+    let rig = rig(ctx, &source)?;
+    let pose = pose(ctx, block, &rig, source.pose.as_ref())?;
+    if block.has("show") {
+        let stance = pose.map_or(Stance::Rest(rig), Stance::Posed);
+        return Ok(bones::drawn(&stance, block.span));
+    }
+    Ok(Shape::Model(Arc::new(ModelSource { pose, ..source })))
+}
+
+/// The moment of a clip that a block gives, with what it does not say as it was before.
+fn moment(
+    ctx: &mut dyn Context,
+    block: &Block,
+    (path, file): (&Path, Span),
+    before: Option<Moment>,
+) -> Outcome<Option<Moment>> {
+    let asked = ["clip", "at"].into_iter().find(|name| block.has(name));
+    let Some(asked) = asked else { return Ok(before) };
+    let clip = match block.text("clip") {
+        None => before.map_or(0, |before| before.clip),
+        Some(name) => clip(ctx, path, file, name, block.place("clip"))?,
+    };
+    let seconds = block.number("at").or(before.map(|before| before.seconds)).unwrap_or(0.0);
+    Ok(Some(Moment { clip, seconds, span: block.place(asked) }))
+}
+
+/// The pose that a block gives, or that it has already; it must be one of the model's skeleton.
+fn pose(
+    ctx: &mut dyn Context,
+    block: &Block,
+    rig: &Rig,
+    before: Option<&Arc<Pose>>,
+) -> Outcome<Option<Arc<Pose>>> {
+    let pose = match block.value("pose") {
+        Some(Value::Pose(pose)) => pose,
+        _ => match before {
+            Some(pose) => pose,
+            None => return Ok(None),
+        },
+    };
     if pose.rig.skeleton == rig.skeleton {
         return Ok(Some(pose.clone()));
     }

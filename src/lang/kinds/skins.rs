@@ -82,10 +82,7 @@ fn skin(ctx: &mut dyn Context, block: Block) -> Outcome {
     let making = Making {
         armature: Arc::new(armature(&stance)),
         weights,
-        blend: match block.word("blend") {
-            Some("dual_quaternion") => Blend::DualQuaternion,
-            _ => Blend::Linear,
-        },
+        blend: blend(&block),
         tolerance: block.number("tolerance"),
         at: block.place("surface"),
     };
@@ -93,6 +90,35 @@ fn skin(ctx: &mut dyn Context, block: Block) -> Outcome {
     whole.span = block.span;
     super::common::apply_to_object(ctx, &mut whole, &block.given)?;
     Ok(Value::Object(Arc::new(whole)))
+}
+
+/// What of a skin a copy may have otherwise.
+pub const CHANGEABLE: [&str; 3] = ["pose", "blend", "tolerance"];
+
+/// A skin, bent otherwise. The pose must be of a skeleton that is at rest as the skin's.
+pub fn changed(ctx: &mut dyn Context, block: &Block, skin: &Skin) -> Outcome<Arc<Skin>> {
+    let mut copy = skin.clone();
+    if let Some(Value::Pose(pose)) = block.value("pose") {
+        let armature = armature(&Stance::Posed(pose.clone()));
+        if armature.names != skin.armature.names || armature.bones != skin.armature.bones {
+            let message = "this pose is one of another skeleton";
+            let hint = "make the pose `of` the skeleton of the skin";
+            return Err(block.fault(ctx, Code::BadProperty, "pose", message, hint));
+        }
+        copy.armature = Arc::new(armature);
+    }
+    if block.has("blend") {
+        copy.blend = blend(block);
+    }
+    copy.tolerance = block.number("tolerance").or(skin.tolerance);
+    Ok(Arc::new(copy))
+}
+
+fn blend(block: &Block) -> Blend {
+    match block.word("blend") {
+        Some("dual_quaternion") => Blend::DualQuaternion,
+        _ => Blend::Linear,
+    }
 }
 
 /// The skeleton in its pose, which must be one of it.

@@ -5,6 +5,7 @@
 //! building it again with the new ones, so that every check of a block holds for its copies too.
 
 mod apart;
+mod bending;
 
 use super::{common, shapes};
 use crate::diag::{Code, Diagnostic, Span};
@@ -182,6 +183,10 @@ fn own_changed(
     if let Some(smoothed) = smoothed(ctx, kind, shape, &own) {
         checked?;
         return smoothed;
+    }
+    if let Some(bent) = bending::changed(ctx, kind, shape, place, &own) {
+        checked?;
+        return bent;
     }
     let Some(parts) = apart::shape(shape, &own) else {
         let said = Diagnostic::new(

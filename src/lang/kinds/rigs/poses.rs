@@ -105,11 +105,14 @@ fn captured(ctx: &mut dyn Context, block: &Block, from: &Stance) -> Outcome<Vec<
         (Some(seconds), Some(motion)) => Ok(motion.at(seconds)),
         (None, _) => Ok(from.coordinates().to_vec()),
         (Some(_), None) => {
-            let hint = "a skeleton of a file moves: `skeleton man { file \"walk.bvh\" }`";
-            Err(block.fault(ctx, Code::BadProperty, "at", "this skeleton has no motion", hint))
+            Err(block.fault(ctx, Code::BadProperty, "at", "this skeleton has no motion", MOVING))
         }
     }
 }
+
+/// What has a moment to ask for.
+const MOVING: &str = "a skeleton of motion capture has: `skeleton man { file \"walk.bvh\" }`; a model's clip is the model's: \
+                      `let man = model { file \"man.glb\"  clip \"walk\"  at 0.6 }`, and then `man.skeleton`";
 
 /// Puts the angles that are given by joints' names into the coordinates. Every fault is reported.
 fn given_joints(
@@ -237,6 +240,9 @@ fn unknown_joint(skeleton: &Skeleton, name: &str, span: Span) -> Diagnostic {
             .hint(format!("a tip reaches for a point: `reach {name}, <6, 3, 0>`"));
     }
     let said = Diagnostic::new(Code::UnknownJoint, span, format!("this skeleton has no joint `{name}`"));
+    if name == "clip" {
+        return said.hint(MOVING);
+    }
     let joints = skeleton.joints().iter().map(|joint| &*joint.name);
     let said = said.did_you_mean(name, joints.chain(POSE.own.iter().map(|property| property.name)));
     if said.hints.is_empty() {
