@@ -8,14 +8,17 @@
 //! | emissive colour, strength | `emit` |
 //! | `MASK`, `BLEND` | `opacity`: the alpha of the base colour, cut off or as it is |
 //! | transmission t, index | `transmit` t·base, less `diffuse`; `ior` where the material has a volume, else 1: a thin sheet bends no light |
+//! | attenuation colour c after a distance d | `absorb` −ln(c)/d, of a volume |
 //! | unlit | `ambient` base, and nothing else |
 //!
 //! Numbers times pictures become pictures. All surfaces shade on both sides. Occlusion is left out: light is computed.
 
 use super::picture::{Look, Pictures, Reference};
 use crate::diag::Span;
+use crate::math::elementary::ln;
 use crate::scene::assets::image::{Image, Reading};
 use crate::scene::{Fresnel, Layers, Material, Pattern, PatternKind, Rgb, Texture};
+use gltf::json::extensions::material::{Transmission, Volume};
 use gltf::json::material::{AlphaMode, Material as FileMaterial};
 use gltf::json::validation::Checked;
 use std::sync::Arc;
@@ -44,6 +47,9 @@ pub(super) fn material(from: &FileMaterial, pictures: &Pictures<'_, '_>, span: S
         shine: look(pbr.metallic_roughness_texture.as_ref().map(Reference::from)),
         normals: look(normals),
         emission: look(from.emissive_texture.as_ref().map(Reference::from)),
+        through: look(
+            transmission_of(from).and_then(|t| t.transmission_texture.as_ref()).map(Reference::from),
+        ),
     };
     let sets: Vec<u32> = looks.all().map(|look| look.set).collect();
     let uv_set = sets.first().copied().unwrap_or(0);
@@ -62,12 +68,22 @@ struct Looks {
     shine: Option<Look>,
     normals: Option<Look>,
     emission: Option<Look>,
+    /// How much goes through, in red.
+    through: Option<Look>,
 }
 
 impl Looks {
     fn all(&self) -> impl Iterator<Item = &Look> {
-        [&self.base, &self.shine, &self.normals, &self.emission].into_iter().flatten()
+        [&self.base, &self.shine, &self.normals, &self.emission, &self.through].into_iter().flatten()
     }
+}
+
+fn transmission_of(from: &FileMaterial) -> Option<&Transmission> {
+    from.extensions.as_ref()?.transmission.as_ref()
+}
+
+fn volume_of(from: &FileMaterial) -> Option<&Volume> {
+    from.extensions.as_ref()?.volume.as_ref().filter(|volume| volume.thickness_factor.0 > 0.0)
 }
 
 struct Translation<'a, 'c> {
@@ -134,8 +150,8 @@ impl Translation<'_, '_> {
             self.layers.metal = Texture::number(DIELECTRIC);
             return;
         }
-        let mixed = |f: fn(Rgb, f64) -> Rgb| self.with_metalness(shine, metalness, f);
-        (self.diffuse, self.layers.metal) = (mixed(|base, m| base * (1.0 - m)), mixed(at_normal));
+        self.diffuse = self.mixed(|base, m, _| base * (1.0 - m));
+        self.layers.metal = self.mixed(|base, m, _| at_normal(base, m));
     }
 
     /// The colour at normal incidence for one metalness.
@@ -154,39 +170,56 @@ impl Translation<'_, '_> {
         }
     }
 
-    /// A colour from the base colour and the metalness of a picture: as finely as the finer of the two pictures.
-    fn with_metalness(&self, shine: &Look, factor: f64, f: fn(Rgb, f64) -> Rgb) -> Texture {
-        let [r, g, b, _] = self.from.pbr_metallic_roughness.base_color_factor.0.map(share);
-        let tint = Rgb::new(r, g, b);
-        let metalness = |x: f64, y: f64| factor * shine.image.nearest(x, y, Reading::Data)[2];
-        let base = self.looks.base.as_ref();
-        let colour = |x: f64, y: f64| {
-            let base = base.map_or([1.0; 4], |look| look.image.nearest(x, y, Reading::Colour));
-            (f(tint * Rgb::new(base[0], base[1], base[2]), metalness(x, y))).to_array()
+    /// A colour from the base colour, the metalness and the share that goes through: as finely as the finest of their pictures.
+    fn mixed(&self, f: impl Fn(Rgb, f64, f64) -> Rgb) -> Texture {
+        let pbr = &self.from.pbr_metallic_roughness;
+        let [r, g, b, _] = pbr.base_color_factor.0.map(share);
+        let (tint, metalness) = (Rgb::new(r, g, b), share(pbr.metallic_factor.0));
+        let through = transmission_of(self.from).map_or(0.0, |t| share(t.transmission_factor.0));
+        let Looks { base, shine, through: sheer, .. } = self.looks;
+        let texel = |look: &Option<Look>, x: f64, y: f64, reading| {
+            look.as_ref().map_or([1.0; 4], |look| look.image.nearest(x, y, reading))
         };
-        let look = base.filter(|base| base.image.width() >= shine.image.width()).unwrap_or(shine);
+        let colour = |x: f64, y: f64| {
+            let [r, g, b, _] = texel(base, x, y, Reading::Colour);
+            let [_, _, m, _] = texel(shine, x, y, Reading::Data);
+            let [t, ..] = texel(sheer, x, y, Reading::Data);
+            f(tint * Rgb::new(r, g, b), metalness * m, through * t).to_array()
+        };
+        let finer = |a: &'_ Look, b: &'_ Look| b.image.width() > a.image.width();
+        let looks = [base, shine, sheer].into_iter().flatten();
+        let Some(look) = looks.reduce(|a, b| if finer(a, b) { b } else { a }) else {
+            return Texture::Constant(f(tint, metalness, through));
+        };
         let image = Image::from_texels(look.image.width(), look.image.height(), colour);
         self.pictures.texture(look, Arc::new(image), true)
     }
 
     fn transmission(&mut self) {
-        let extensions = self.from.extensions.as_ref();
-        let Some(transmission) = extensions.and_then(|e| e.transmission.as_ref()) else { return };
+        let Some(transmission) = transmission_of(self.from) else { return };
+        let metalness = share(self.from.pbr_metallic_roughness.metallic_factor.0);
         let through = share(transmission.transmission_factor.0);
-        if through == 0.0 {
+        let opaque = metalness == 1.0 && self.looks.shine.is_none();
+        let ior =
+            self.from.extensions.as_ref().and_then(|e| e.ior.as_ref()).map_or(1.5, |i| f64::from(i.ior.0));
+        if opaque || through == 0.0 || !(ior >= 1.0) {
             return;
         }
-        let has_volume =
-            extensions.and_then(|e| e.volume.as_ref()).is_some_and(|v| v.thickness_factor.0 > 0.0);
-        let ior = extensions.and_then(|e| e.ior.as_ref()).map_or(1.5, |i| f64::from(i.ior.0));
-        let metalness = share(self.from.pbr_metallic_roughness.metallic_factor.0);
-        if metalness < 1.0 && ior >= 1.0 {
-            self.layers.metal = Texture::ZERO;
-            self.layers.fresnel = Fresnel::Exact;
-            self.layers.ior = Texture::number(if has_volume { ior } else { 1.0 });
-            self.layers.transmit = self.base(Rgb::splat(through * (1.0 - metalness)));
-            self.diffuse = self.base(Rgb::splat((1.0 - through) * (1.0 - metalness)));
+        self.layers.metal = Texture::ZERO;
+        self.layers.fresnel = Fresnel::Exact;
+        self.layers.ior = Texture::number(1.0);
+        if let Some(volume) = volume_of(self.from) {
+            self.layers.ior = Texture::number(ior);
+            self.layers.absorb = Texture::Constant(absorption(volume));
         }
+        let (transmit, diffuse) = (|m: f64, t: f64| t * (1.0 - m), |m: f64, t: f64| (1.0 - t) * (1.0 - m));
+        if self.looks.shine.is_none() && self.looks.through.is_none() {
+            self.layers.transmit = self.base(Rgb::splat(transmit(metalness, through)));
+            self.diffuse = self.base(Rgb::splat(diffuse(metalness, through)));
+            return;
+        }
+        self.layers.transmit = self.mixed(|base, m, t| base * transmit(m, t));
+        self.diffuse = self.mixed(|base, m, t| base * diffuse(m, t));
     }
 
     fn emission(&mut self) {
@@ -237,6 +270,16 @@ impl Translation<'_, '_> {
 /// The colour at normal incidence.
 fn at_normal(base: Rgb, metalness: f64) -> Rgb {
     base * metalness + Rgb::splat(DIELECTRIC * (1.0 - metalness))
+}
+
+/// What a volume takes away per unit length: all but a colour over a distance. Black is taken for the darkest normal f32.
+fn absorption(volume: &Volume) -> Rgb {
+    let distance = f64::from(volume.attenuation_distance.0);
+    if !(distance > 0.0 && distance.is_finite()) {
+        return Rgb::ZERO;
+    }
+    let lost = |c: f32| -ln(share(c).max(f64::from(f32::MIN_POSITIVE))) / distance;
+    Rgb::from(volume.attenuation_color.0.map(lost))
 }
 
 /// A number of 0 … 1.
