@@ -494,6 +494,11 @@ pub fn remedy(name: &str, types: &[Type], value: &Value) -> Option<String> {
             Some("take one element, as in `list[0]`".into())
         }
         Value::Bool(true) if wants_number => Some(format!("write `{name} 1`")),
+        Value::Material(_) | Value::Object(_) | Value::Light(_) | Value::Part(_)
+            if types.contains(&Type::Bool) =>
+        {
+            Some(format!("in the middle of a line, set a flag with `{name} on`"))
+        }
         _ => None,
     }
 }

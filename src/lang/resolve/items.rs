@@ -9,6 +9,7 @@ use super::program::{
 use super::scope::{CaptureList, Declared, Owner};
 use super::{Place, Resolver, Signature};
 use crate::diag::{Code, Diagnostic, Span};
+use crate::lang::table::Kind;
 use crate::syntax::ast;
 
 impl<'a> Resolver<'a> {
@@ -299,6 +300,12 @@ impl<'a> Resolver<'a> {
             return self.lone_name(&property.name, place);
         }
         let name = &property.name;
+        if let Place::Block(kind) = place
+            && let Some(said) = self.flag_before_property(kind, property)
+        {
+            self.report(said);
+            return ItemKind::Poison(Some(self.word(&name.name)));
+        }
         let values: Vec<Expr> = match place {
             Place::Block(kind) => self.property_values(Some(kind), property),
             Place::Loose => self.property_values(None, property),
@@ -319,6 +326,19 @@ impl<'a> Resolver<'a> {
         }
         let name_word = self.word(&name.name);
         ItemKind::Property(Box::new(Property { name: name_word, name_span: name.span, known, values }))
+    }
+
+    /// What to say where a flag stands before another property on its line, and takes that for its value: `ball limits -90, 90`.
+    fn flag_before_property(&self, kind: &Kind, property: &ast::Property) -> Option<Diagnostic> {
+        let flag = &property.name.name;
+        let (word, span) = kind.property(flag).filter(|p| p.is_flag()).and(leading(&property.values[0]))?;
+        if self.in_scope(word) || kind.property(word).is_none() {
+            return None;
+        }
+        let message = format!("`{flag}` is a flag, and takes `{word}` behind it on its line for its value");
+        let said = Diagnostic::new(Code::BadProperty, span, message)
+            .hint(format!("in the middle of a line, set a flag with `{flag} on`"));
+        Some(said)
     }
 
     fn report_unknown_property(&mut self, name: &ast::Ident, values: &[ast::Expr], place: Place) {
@@ -378,5 +398,14 @@ impl<'a> Resolver<'a> {
             Place::Loose | Place::Top => Vec::new(),
         };
         ItemKind::Place(self.name(&name.name, name.span, &names))
+    }
+}
+
+/// The name that an expression begins with, and where.
+fn leading(expr: &ast::Expr) -> Option<(&str, Span)> {
+    match &expr.kind {
+        ast::ExprKind::Name(name) => Some((name, expr.span)),
+        ast::ExprKind::Binary(_, sides, _) => leading(&sides.0),
+        _ => None,
     }
 }

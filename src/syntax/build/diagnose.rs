@@ -358,6 +358,14 @@ pub(super) fn general(text: &str, head: &Piece<'_>, around: &Around<'_>) -> Said
         (Some(before), at) if around.count == 1 && before.start == head.start && around.inside.is_none() => {
             property_wants_value(text, &before, at)
         }
+        (Some(before), Some(at))
+            if is_kind(before.text) && at.sort == Sort::Word && around.inside.is_none() =>
+        {
+            Said::new(&before, format!("`{} {}` cannot stand here", before.text, at.text)).hint(format!(
+                "put it on a line of its own; a flag before it in its line is written `{} on`",
+                head.text
+            ))
+        }
         (Some(before), Some(at)) => unexpected(&before, &at, around, &closing),
         (Some(before), None) => Said::new(&before, format!("expected more before {closing}")),
     }
