@@ -4,7 +4,7 @@
 use super::Settings;
 use super::descent::{End, Run, descend};
 use super::problem::{Problem, State, Term, Variable};
-use crate::geometry::skeleton::Turning;
+use crate::geometry::skeleton::{Limits, Turning};
 use crate::math::random::Random;
 
 /// How many other starts: the rest pose, the middle of the limits, and some at random. Of 300 random limited chains with a target they
@@ -14,8 +14,9 @@ const STARTS: usize = 12;
 /// Another end is better when its sum is below this share of the first's.
 const CLEARLY: f64 = 1.0 - 1e-6;
 
-/// So many other starts that come to the same end, which no limit holds, are taken to say that there is no better one.
-const AGREED: usize = 2;
+/// So many other starts that come to the same end, of a chain without limits, are taken to say that there is no better one. (The first two
+/// may be one start: a rest pose of angles 0.)
+const AGREED: usize = 3;
 
 /// The best of this descent and of others from elsewhere.
 pub fn better(problem: &Problem<'_>, first: Run, settings: &Settings) -> Run {
@@ -34,17 +35,16 @@ pub fn better(problem: &Problem<'_>, first: Run, settings: &Settings) -> Run {
         let agrees = !wins && CLEARLY * run.state.sum <= best.state.sum;
         agreed = if wins { 0 } else { agreed + usize::from(agrees) };
         best = Run { iterations, largest_step, ..if wins { run } else { best } };
-        if best.end == End::Reached || (agreed >= AGREED && is_free(problem, &best.state)) {
+        if best.end == End::Reached || (agreed >= AGREED && is_free(problem)) {
             break;
         }
     }
     best
 }
 
-/// Whether no limit is in the way.
-fn is_free(problem: &Problem<'_>, state: &State) -> bool {
-    let gradient = problem.gradient(state);
-    problem.variables.iter().zip(&gradient).all(|(v, g)| !v.binds(&state.coordinates, *g))
+/// Whether nothing has limits: those make minima that are not the least, and many starts may end there.
+fn is_free(problem: &Problem<'_>) -> bool {
+    problem.variables.iter().all(|v| v.limits == Limits::NONE)
 }
 
 fn start(problem: &Problem<'_>, state: &State, k: usize, random: &mut Random) -> Vec<f64> {
@@ -52,7 +52,7 @@ fn start(problem: &Problem<'_>, state: &State, k: usize, random: &mut Random) ->
     for v in &problem.variables {
         let value = match k {
             0 => problem.skeleton.rest()[v.coordinate],
-            1 => middle(v, random),
+            1 => middle(v),
             _ => anywhere(v, random),
         };
         coordinates[v.coordinate] = value.clamp(v.limits.low, v.limits.high);
@@ -60,9 +60,9 @@ fn start(problem: &Problem<'_>, state: &State, k: usize, random: &mut Random) ->
     coordinates
 }
 
-fn middle(v: &Variable, random: &mut Random) -> f64 {
+fn middle(v: &Variable) -> f64 {
     let middle = 0.5 * (v.limits.low + v.limits.high);
-    if middle.is_finite() { middle } else { anywhere(v, random) }
+    if middle.is_finite() { middle } else { 0.0 }
 }
 
 fn anywhere(v: &Variable, random: &mut Random) -> f64 {

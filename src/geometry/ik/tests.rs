@@ -316,3 +316,20 @@ fn a_chain_of_twenty_joints_takes_a_few_dozen_steps_wherever_its_target_is() {
         assert!(found.iterations <= 60, "({x}, {y}): {}", found.iterations);
     }
 }
+
+/// Alternate axes leave the first link in a plane, so that no bound of lengths tells that 7 is the least. (By the planes: √(19.2² + 14.4² + 10²) − 19.)
+#[test]
+fn an_end_that_other_starts_come_to_again_is_believed() {
+    let mut chain = Skeleton::default();
+    let mut parent = None;
+    for k in 0..20 {
+        let hinge = Freedom::Hinge(if k % 2 == 0 { DVec3::Z } else { DVec3::Y });
+        let offset = DVec3::X * f64::from(u8::from(k > 0));
+        parent = Some(chain.add_joint("", parent, offset, hinge, &[0.0], &[Limits::NONE]));
+    }
+    chain.add_tip("", 19, DVec3::X);
+    let goal = Goal { tip: 0, point: DVec3::new(20.0, 15.0, 10.0), weight: 1.0, toward: None };
+    let found = reach(&chain, &[10.0; 20], &[goal], Method::DampedLeastSquares);
+    assert!((found.residual - 7.0).abs() <= 1e-9, "{found:?}");
+    assert!(found.iterations <= 100, "{}", found.iterations);
+}
