@@ -16,6 +16,7 @@ pub mod film;
 mod medium;
 pub mod output;
 pub mod path;
+mod photon;
 pub mod sampler;
 pub mod settings;
 pub mod tiles;
@@ -32,6 +33,7 @@ pub fn tracer(
         TracerKind::Whitted => Some(Box::new(whitted::Whitted::new(world, settings))),
         TracerKind::Path => Some(Box::new(path::Path::new(world, settings))),
         TracerKind::MonteCarlo => Some(Box::new(path::Path::branching(world, settings))),
-        TracerKind::Irradiance | TracerKind::Photon => None,
+        TracerKind::Photon => Some(Box::new(path::Path::with_photons(world, settings))),
+        TracerKind::Irradiance => None,
     }
 }

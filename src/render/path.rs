@@ -1,6 +1,7 @@
 //! Path tracing (Kajiya, *The Rendering Equation*, 1986): one path from the camera for each sample, which goes on wherever
 //! light may have come from, and at every surface asks one light directly. `montecarlo` does the same with a path that
-//! branches once, at the first surface that spreads light: what the camera ray cost is shared by all branches.
+//! branches once, at the first surface that spreads light: what the camera ray cost is shared by all branches. `photon` ends it
+//! where photons tell the rest.
 //!
 //! What a light sends is found in two ways, by asking it and by meeting it; each counts by its share of the two densities
 //! (the balance heuristic of Veach & Guibas, 1995), so that neither is counted twice. Lights without extent are only asked;
@@ -12,6 +13,7 @@
 
 use super::Tracer;
 use super::medium::{Inside, kept};
+use super::photon::Maps;
 use super::sampler::Sampler;
 use super::settings::ResolvedSettings;
 use crate::scene::Rgb;
@@ -21,7 +23,7 @@ use crate::world::texture::Sampled;
 use crate::world::{Hit, Ray, RayKind, SurfacePoint, World};
 use glam::{DVec2, DVec3};
 
-/// The tracers `path` and `montecarlo`.
+/// The tracers `path`, `montecarlo` and `photon`.
 pub struct Path {
     lights: Lights,
     choice: Choice,
@@ -31,6 +33,7 @@ pub struct Path {
     has_holes: bool,
     /// How many ways on are taken from the first surface that spreads light.
     branches: u32,
+    photons: Option<Maps>,
 }
 
 /// Branches of `montecarlo`. A power of two, so that the points of a surface's ways are even.
@@ -51,6 +54,30 @@ struct Last {
     density: f64,
 }
 
+/// How far a path is that photons may end.
+#[derive(Clone, Copy, PartialEq)]
+enum Stage {
+    /// There are no photons.
+    Whole,
+    /// All surfaces so far were mirrors and glass.
+    Seen,
+    /// It left a matt surface.
+    Gathers,
+    /// It left a matt surface and mirrors after it: what it meets by itself is among the caustics there.
+    Covered,
+}
+
+impl Stage {
+    fn after(self, is_mirror: bool) -> Stage {
+        match (self, is_mirror) {
+            (Stage::Whole, _) => Stage::Whole,
+            (_, false) => Stage::Gathers,
+            (Stage::Seen, true) => Stage::Seen,
+            (Stage::Gathers | Stage::Covered, true) => Stage::Covered,
+        }
+    }
+}
+
 /// A path under way.
 struct Walk<'a> {
     ray: Ray,
@@ -65,6 +92,7 @@ struct Walk<'a> {
     last: Option<Last>,
     /// True while the camera sees along it, by mirrors and glass.
     seen: bool,
+    stage: Stage,
     sum: Rgb,
     sampler: &'a mut Sampler,
 }
@@ -77,12 +105,18 @@ impl Path {
         let choice = Choice::new(&lights.lights, if radius.is_finite() { radius } else { 0.0 });
         let has_holes = world.materials().iter().any(|m| !m.layers().opacity.is(Rgb::ONE));
         let ResolvedSettings { depth, background, .. } = *settings;
-        Path { lights, choice, depth, background, has_holes, branches: 1 }
+        Path { lights, choice, depth, background, has_holes, branches: 1, photons: None }
     }
 
     /// Paths that branch once.
     pub fn branching(world: &World, settings: &ResolvedSettings) -> Path {
         Path { branches: BRANCHES, ..Path::new(world, settings) }
+    }
+
+    /// Paths that photons end.
+    pub fn with_photons(world: &World, settings: &ResolvedSettings) -> Path {
+        let path = Path::new(world, settings);
+        Path { photons: Some(Maps::new(world, &path.lights, &path.choice, settings)), ..path }
     }
 }
 
@@ -97,6 +131,7 @@ impl Tracer for Path {
             branches: self.branches,
             last: None,
             seen: true,
+            stage: if self.photons.is_some() { Stage::Seen } else { Stage::Whole },
             sum: Rgb::ZERO,
             sampler,
         };
@@ -117,6 +152,9 @@ impl Path {
     /// Takes a path to the end of its ray and aims it anew. False where it ends.
     fn follow(&self, world: &World, walk: &mut Walk<'_>) -> Sampled<bool> {
         let Some(hit) = world.closest(&walk.ray) else {
+            if walk.stage == Stage::Covered {
+                return Ok(false);
+            }
             walk.sum += walk.weight * walk.inside.kept(f64::INFINITY) * self.beyond(walk);
             return Ok(false);
         };
@@ -129,18 +167,37 @@ impl Path {
             return Ok(true);
         }
         let emitted = bsdf.emitted(world, &hit);
-        if emitted != Rgb::ZERO {
+        if emitted != Rgb::ZERO && walk.stage != Stage::Covered {
             walk.sum += walk.weight * emitted * self.share_of_meeting(world, &hit, walk);
         }
         if walk.segment >= self.depth {
             return Ok(false);
         }
-        self.go_on(world, &hit, &bsdf, walk)
+        match &self.photons {
+            Some(maps) if self.is_told(maps, &hit, &bsdf, walk) => Ok(walk.is_mirrored(&hit, &bsdf)),
+            _ => self.go_on(world, &hit, &bsdf, walk),
+        }
+    }
+
+    /// Adds what photons tell at a surface. True where that is all that its lobes send.
+    fn is_told(&self, maps: &Maps, hit: &Hit<'_>, bsdf: &Bsdf, walk: &mut Walk<'_>) -> bool {
+        if !bsdf.has_base() {
+            return false;
+        }
+        if matches!(walk.stage, Stage::Gathers | Stage::Covered)
+            && let Some(light) = maps.all(hit, bsdf, walk.segment)
+        {
+            walk.sum += walk.weight * light;
+            return true;
+        }
+        walk.sum += walk.weight * maps.caustic(hit, bsdf, walk.segment);
+        walk.stage = if walk.stage == Stage::Covered { Stage::Gathers } else { walk.stage };
+        false
     }
 
     /// Asks lights and leaves the surface, along all ways of the branches where it is the one that branches.
     fn go_on(&self, world: &World, hit: &Hit<'_>, bsdf: &Bsdf, walk: &mut Walk<'_>) -> Sampled<bool> {
-        let spreads = bsdf.has_lobes();
+        let spreads = bsdf.has_lobes() && walk.stage != Stage::Covered;
         let n = if spreads { std::mem::replace(&mut walk.branches, 1) } else { 1 };
         let (which, odds) = (walk.sampler.next_set(), bsdf.odds());
         if spreads && !self.lights.lights.is_empty() {
@@ -240,6 +297,11 @@ fn balance(this: f64, other: f64) -> f64 {
     if this > 0.0 { this / (this + other) } else { 0.0 }
 }
 
+/// How often what carries so much goes on from a segment.
+pub(super) fn survival(carried: f64, segment: u32) -> f64 {
+    carried.min(if segment < LONG { 1.0 } else { MOST_SURVIVAL })
+}
+
 impl Walk<'_> {
     /// A path of its own from here on, of which nothing is summed yet.
     fn branch(&mut self) -> Walk<'_> {
@@ -255,6 +317,7 @@ impl Walk<'_> {
         self.weight *= bounce.weight;
         self.ray = hit.spawn(bounce.direction, RayKind::Indirect);
         self.last = bounce.density.map(|density| Last { point: hit.point, normal: bsdf.normal, density });
+        self.stage = self.stage.after(self.last.is_none() || !bsdf.has_base());
         self.seen &= self.last.is_none();
         self.segment += 1;
         self.segment < FIRST_ROULETTE || self.survives()
@@ -262,11 +325,20 @@ impl Walk<'_> {
 
     /// Ends by chance where little is carried; what goes on counts for those that ended.
     fn survives(&mut self) -> bool {
-        let most = if self.segment < LONG { 1.0 } else { MOST_SURVIVAL };
-        let survival = self.weight.max_element().min(most);
+        let survival = survival(self.weight.max_element(), self.segment);
         let goes_on = self.sampler.next_1d() < survival;
         self.weight /= survival;
         goes_on
+    }
+
+    /// Goes on from a surface whose lobes are told, off its smooth mirror if it has one. False where the path ends.
+    fn is_mirrored(&mut self, hit: &Hit<'_>, bsdf: &Bsdf) -> bool {
+        if !bsdf.goes_on() || bsdf.is_glossy() {
+            return false;
+        }
+        let (which, way) = (self.sampler.next_1d(), self.sampler.next_2d());
+        let bounce = bsdf.bounce(bsdf.odds(), which, way).filter(|bounce| bounce.density.is_none());
+        bounce.is_some_and(|bounce| self.leave(hit, bsdf, &bounce))
     }
 
     fn count(&mut self, bounce: &Bounce) {

@@ -14,6 +14,7 @@ mod layers;
 mod meshes;
 mod models;
 mod paths;
+mod photons;
 mod pictures;
 mod planted;
 mod radiometry;

@@ -238,7 +238,7 @@ fn tracer(ctx: &mut dyn Context, block: &Block) -> Option<TracerKind> {
         "irradiance" => TracerKind::Irradiance,
         _ => TracerKind::Photon,
     };
-    if matches!(kind, TracerKind::Irradiance | TracerKind::Photon) {
+    if kind == TracerKind::Irradiance {
         not_built(ctx, block, "tracer", "path");
     }
     Some(kind)

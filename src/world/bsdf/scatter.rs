@@ -79,6 +79,14 @@ impl Bsdf {
         useful.then_some(Bounce { direction, weight, density: Some(density), through })
     }
 
+    /// What is sent on along `to` of light that arrives along `wo`, per steradian: light followed the other way. The base is shaded by
+    /// the mirror's share toward who sees it, so the two ways differ.
+    pub fn forwarded(&self, to: DVec3) -> Rgb {
+        let from = self.wo;
+        let seen = Bsdf { wo: to, ..self.clone() };
+        seen.sent(from) * (to.dot(self.normal).max(0.0) / from.dot(self.normal))
+    }
+
     fn smooth(&self, way: super::Scattered, odds: f64, through: bool) -> Option<Bounce> {
         Some(Bounce { direction: way.direction, weight: way.weight / odds, density: None, through })
     }

@@ -5,6 +5,7 @@
 //! [`LightSample::weight`] by BSDF, cosine and visibility and averages.
 
 mod choice;
+mod emission;
 mod picture;
 mod pieces;
 mod surface;
@@ -14,6 +15,7 @@ use super::{Emitter, PlacedLight, PrimitiveId, Ray, RayKind, World};
 use crate::math::elementary::{sin_cos, sin_cos_degrees};
 use crate::scene::{LightSource, Rgb, Sky};
 pub use choice::Choice;
+pub use emission::{Ball, Emitted};
 use glam::{DVec2, DVec3};
 use picture::PictureSky;
 use std::f64::consts::{PI, TAU};
@@ -114,6 +116,11 @@ impl Lights {
     /// The radiance of each sky in a direction, with the light that it is.
     pub fn skies(&self, direction: DVec3) -> impl Iterator<Item = (usize, Rgb)> {
         self.skies.iter().map(move |&i| (i, self.lights[i].from_beyond(direction)))
+    }
+
+    /// True where some light comes from beyond everything: a sun or a sky.
+    pub fn from_afar(&self) -> bool {
+        self.lights.iter().any(|light| light.is_sky() || matches!(light.source, Source::Sun { .. }))
     }
 
     /// Radiance of all skies together in a direction; none where there is no sky.

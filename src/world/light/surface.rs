@@ -3,6 +3,7 @@
 //! A flat surface and a mesh emit from the side that their normal leaves. A closed solid emits from both, so that a point
 //! inside a glowing sphere is lit.
 
+use super::emission::{Departure, sphere};
 use super::pieces::{Curved, Piece, PiecePoint, sphere_uv};
 use super::{LightEnd, LightSample, SurfacePoint, cosine_hemisphere, frame, to_frame};
 use crate::geometry::mesh::Mesh;
@@ -79,6 +80,24 @@ impl AreaLight {
                 flat.then(|| (met.point - at).length_squared() / (cosine * sums[sums.len() - 1]))
             }
         }
+    }
+
+    /// A point chosen by u from which light leaves.
+    pub(super) fn departure(&self, u: DVec2) -> Option<Departure> {
+        let (at, uv, area, closed) = match &self.form {
+            Form::Sphere { center, radius } => {
+                let normal = sphere(u);
+                let error = (center.abs() + DVec3::splat(*radius)) * gamma(12);
+                let at = SurfacePoint { point: *center + normal * *radius, error, normal };
+                (at, sphere_uv(self.local_from_world.vector(normal)), 4.0 * PI * radius * radius, true)
+            }
+            Form::Pieces { pieces, sums, solid, .. } => {
+                let (piece, share, u) = choose(pieces, sums, u);
+                let chosen = piece.point(u);
+                (chosen.at, chosen.uv, chosen.area / share, solid.is_some())
+            }
+        };
+        (area > 0.0 && area.is_finite()).then_some((at, uv, area, closed))
     }
 
     /// Its area, roughly where it is curved.
@@ -160,7 +179,7 @@ impl AreaLight {
         weight.is_finite().then_some((LightSample { wi, weight, pdf: Some(pdf), end }, distance))
     }
 
-    fn emitted(&self, at: &SurfacePoint, uv: DVec2, distance: f64) -> Rgb {
+    pub(super) fn emitted(&self, at: &SurfacePoint, uv: DVec2, distance: f64) -> Rgb {
         match &self.emission {
             Texture::Constant(radiance) => *radiance,
             Texture::Pattern(_) => {

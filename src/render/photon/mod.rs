@@ -1,0 +1,114 @@
+//! Photon maps (Jensen, *Global Illumination Using Photon Maps*, 1996) as the tracer `photon` uses them: the light that paths
+//! from the camera cannot find or find only by many segments is looked up where light from the lamps has left it.
+//!
+//! | light on its way to the first matt surface that the camera sees | found by |
+//! |---|---|
+//! | straight from a lamp | the path, which asks and meets |
+//! | from a lamp by mirrors and glass alone | the map of caustics, there |
+//! | from other matt surfaces | one segment on, the map of all photons at the matt surface met |
+//!
+//! Where photons are sparse, or the surface met is too close for a disc of them, the path goes on as any other: the
+//! estimate is blurred by no more than a few times the distance of photons where there is light.
+//! More samples shoot more photons, and the discs shrink.
+
+mod map;
+mod shoot;
+
+use super::settings::ResolvedSettings;
+use crate::scene::Rgb;
+use crate::world::bsdf::Bsdf;
+use crate::world::light::{Ball, Choice, Lights};
+use crate::world::{Hit, World};
+use map::{Map, Photon, Query};
+use shoot::Shooting;
+
+/// The photons of a world.
+pub struct Maps {
+    global: Map,
+    caustics: Map,
+    /// Within which an estimate of each is made.
+    radii: [f64; 2],
+    /// Where light from afar was sent; none where there is no such light.
+    lit: Option<Ball>,
+    depth: u32,
+}
+
+/// Photons in an estimate: of all light, which is averaged over many places, and of caustics, which are seen as they are.
+const MOST: [usize; 2] = [16, 64];
+
+/// Paths from the lamps for each sample of a pixel, and at most: of all light, and of caustics, most of which end at once.
+const PATHS: [[u32; 2]; 2] = [[1 << 12, 1 << 20], [1 << 15, 1 << 22]];
+
+/// Photons kept at most.
+const ROOM: [usize; 2] = [1 << 22, 1 << 21];
+
+/// An estimate reaches no farther than so many times the middle distance of photons: where they are sparser there is less light
+/// than blur.
+const REACH: f64 = 4.0;
+
+/// A surface met at less than so many reaches is in the same corner.
+const CORNER: f64 = 2.0;
+
+impl Maps {
+    /// Shoots the photons of a world. Takes all threads there are, which leaves no trace in the maps.
+    pub fn new(world: &World, lights: &Lights, choice: &Choice, settings: &ResolvedSettings) -> Maps {
+        let bounds = world.bounds();
+        let radius = bounds.size().length() / 2.0;
+        let usable = radius.is_finite() && radius > 0.0;
+        let ball = Ball {
+            center: if usable { (bounds.min + bounds.max) / 2.0 } else { glam::DVec3::ZERO },
+            radius: if usable { radius } else { 0.0 },
+        };
+        let ResolvedSettings { depth, seed, samples, .. } = *settings;
+        let shooting = Shooting { world, lights, choice, ball, depth, seed, caustics: false };
+        let map = |i: usize, shooting: Shooting<'_>| {
+            let [each, most] = PATHS[i];
+            Map::new(shooting.photons(samples.saturating_mul(each).min(most), ROOM[i]))
+        };
+        let global = map(0, shooting);
+        let bends = world.materials().iter().any(|material| bends(material));
+        let caustics = if bends { map(1, Shooting { caustics: true, ..shooting }) } else { Map::default() };
+        let reach = |map: &Map, most| REACH * map.spacing(most).unwrap_or(0.0);
+        let radii = [reach(&global, MOST[0]), reach(&caustics, MOST[1])];
+        Maps { global, caustics, radii, lit: lights.from_afar().then_some(ball), depth }
+    }
+
+    /// What a surface sends on of all light, at the end of a segment that begins at a matt surface. None where photons cannot
+    /// tell.
+    pub fn all(&self, hit: &Hit<'_>, bsdf: &Bsdf, segment: u32) -> Option<Rgb> {
+        let outside = |ball: &Ball| ball.center.distance_squared(hit.point) > ball.radius * ball.radius;
+        if hit.t < CORNER * self.radii[0] || self.lit.as_ref().is_some_and(outside) {
+            return None;
+        }
+        self.global.gather(&self.query(0, hit, bsdf, segment), false, |photon| sent_on(bsdf, photon))
+    }
+
+    /// What a surface sends on of light that came by mirrors and glass alone.
+    pub fn caustic(&self, hit: &Hit<'_>, bsdf: &Bsdf, segment: u32) -> Rgb {
+        if self.radii[1] == 0.0 {
+            return Rgb::ZERO;
+        }
+        let query = self.query(1, hit, bsdf, segment);
+        self.caustics.gather(&query, true, |photon| sent_on(bsdf, photon)).unwrap_or(Rgb::ZERO)
+    }
+
+    fn query(&self, i: usize, hit: &Hit<'_>, bsdf: &Bsdf, segment: u32) -> Query {
+        let segments = if self.depth == u32::MAX { u32::MAX } else { self.depth.saturating_sub(segment) };
+        Query { point: hit.point, normal: bsdf.geometric, radius: self.radii[i], most: MOST[i], segments }
+    }
+}
+
+fn bends(material: &crate::scene::Material) -> bool {
+    let zero = |texture: &crate::scene::Texture| texture.is(Rgb::ZERO);
+    material.layers.as_deref().is_some_and(|l| !(zero(&l.transmit) && zero(&l.metal) && zero(&l.reflect)))
+}
+
+/// What becomes of a photon's power: sent on to where the surface is seen from, per area and solid angle.
+fn sent_on(bsdf: &Bsdf, photon: &Photon) -> Rgb {
+    let from = photon.from.as_dvec3();
+    let cosine = from.dot(bsdf.normal);
+    if cosine <= 0.0 {
+        return Rgb::ZERO;
+    }
+    bsdf.sent(from) / cosine * photon.power.as_dvec3()
+}

@@ -1,0 +1,130 @@
+//! Light followed from the lamps: where it arrives on surfaces that spread it, photons are left. Knows nothing of cameras.
+
+use super::map::Photon;
+use crate::render::medium::{Inside, kept};
+use crate::render::path::survival;
+use crate::render::sampler::Sampler;
+use crate::scene::Rgb;
+use crate::world::bsdf::Bsdf;
+use crate::world::light::{Ball, Choice, Light, Lights};
+use crate::world::texture::Sampled;
+use crate::world::{Ray, RayKind, World};
+use rayon::prelude::*;
+
+/// What is shot, into what.
+#[derive(Clone, Copy)]
+pub struct Shooting<'a> {
+    /// What light meets.
+    pub world: &'a World,
+    /// Where it comes from.
+    pub lights: &'a Lights,
+    /// How often each is asked.
+    pub choice: &'a Choice,
+    /// Holds what light from afar shall meet.
+    pub ball: Ball,
+    /// Most segments from lamp to camera.
+    pub depth: u32,
+    /// Of the random numbers.
+    pub seed: u64,
+    /// Only light that came by mirrors and glass alone, and what it meets first after them.
+    pub caustics: bool,
+}
+
+/// A photon under way.
+struct Flight {
+    ray: Ray,
+    power: Rgb,
+    inside: Inside,
+    /// Segments from the lamp, this one counted.
+    segment: u32,
+    sampler: Sampler,
+}
+
+/// Paths followed before it is asked whether there are enough photons.
+const BATCH: u32 = 1 << 14;
+
+/// Paths that a thread follows at a time.
+const CHUNK: u32 = 1 << 8;
+
+/// The row of random numbers that no pixel has.
+const NO_ROW: u32 = u32::MAX;
+
+impl Shooting<'_> {
+    /// The photons of so many paths, or of fewer where there are as many photons as can be kept.
+    pub fn photons(&self, paths: u32, most: usize) -> Vec<Photon> {
+        let mut photons = Vec::new();
+        let mut shot = 0;
+        while shot < paths && photons.len() < most {
+            let batch = BATCH.min(paths - shot);
+            let chunks: Vec<u32> = (shot..shot + batch).step_by(CHUNK as usize).collect();
+            let of = |&first: &u32| self.chunk(first, (first + CHUNK).min(shot + batch));
+            let found: Vec<Vec<Photon>> = chunks.par_iter().map(of).collect();
+            photons.extend(found.into_iter().flatten());
+            shot += batch;
+        }
+        let share = 1.0 / shot.max(1) as f32;
+        photons.iter_mut().for_each(|photon| photon.power *= share);
+        photons
+    }
+
+    fn chunk(&self, first: u32, end: u32) -> Vec<Photon> {
+        let mut photons = Vec::new();
+        for path in first..end {
+            // What a surface's function leaves undefined is said by the camera's rays, if they see it.
+            let _ = self.shoot(path, &mut photons);
+        }
+        photons
+    }
+
+    fn shoot(&self, path: u32, photons: &mut Vec<Photon>) -> Sampled<()> {
+        let mut sampler = Sampler::new(self.seed, u32::from(self.caustics), NO_ROW, path);
+        let (which, place, way) = (sampler.next_2d(), sampler.next_2d(), sampler.next_2d());
+        let Some((i, often)) = self.choice.pick(which.x) else { return Ok(()) };
+        let light = &self.lights.lights[i];
+        let Some(emitted) = light.emit(place, way, which.y, &self.ball) else { return Ok(()) };
+        let power = emitted.power / often;
+        let mut flight = Flight { ray: emitted.ray, power, inside: Inside::NOTHING, segment: 1, sampler };
+        while self.follow(light, &mut flight, photons)? {}
+        Ok(())
+    }
+
+    /// Takes a photon to the end of its ray and aims it anew. False where it ends.
+    fn follow(&self, light: &Light, flight: &mut Flight, photons: &mut Vec<Photon>) -> Sampled<bool> {
+        let Some(hit) = self.world.closest(&flight.ray) else { return Ok(false) };
+        let bsdf = Bsdf::at(self.world, &hit, &flight.ray)?;
+        if let Some(absorb) = flight.inside.absorbing(&bsdf) {
+            flight.power *= kept(absorb, hit.t);
+        }
+        if bsdf.opacity < 1.0 && flight.sampler.next_1d() >= bsdf.opacity {
+            flight.ray = hit.spawn(flight.ray.direction, flight.ray.kind);
+            return Ok(true);
+        }
+        if flight.segment == 1 {
+            flight.power *= light.dimming(hit.t);
+        }
+        if bsdf.has_base() && (flight.segment > 1 || !self.caustics) {
+            let from = -flight.ray.direction;
+            photons.push(Photon::new(hit.point, from, bsdf.geometric, flight.power, flight.segment));
+        }
+        // One more segment leads to the camera.
+        if flight.segment.saturating_add(1) >= self.depth {
+            return Ok(false);
+        }
+        let (which, u) = (flight.sampler.next_2d(), flight.sampler.next_2d());
+        let Some(bounce) = bsdf.bounce(bsdf.odds(), which.x, u) else { return Ok(false) };
+        let spread = bounce.density.filter(|_| bsdf.has_base());
+        let weight = match spread {
+            Some(_) if self.caustics => return Ok(false),
+            Some(density) => bsdf.forwarded(bounce.direction) / density,
+            None => bounce.weight,
+        };
+        if bounce.through {
+            flight.inside = flight.inside.across(&bsdf);
+        }
+        flight.ray = hit.spawn(bounce.direction, RayKind::Indirect);
+        flight.segment += 1;
+        let goes_on = survival(weight.max_element(), flight.segment);
+        flight.power *= weight / goes_on;
+        Ok(which.y < goes_on && flight.power.is_finite())
+    }
+}

@@ -1,0 +1,153 @@
+//! Light by photons: closed forms within one in a hundred, caustics that no path finds, and agreement with paths.
+
+use crate::stage::*;
+use glam::DVec3;
+use ogee::render::sampler::Sampler;
+use ogee::render::settings::ResolvedSettings;
+use ogee::render::tracer;
+use ogee::scene::*;
+use ogee::world::{Ray, RayKind, World};
+use std::f64::consts::PI;
+use std::sync::Arc;
+
+const X: DVec3 = DVec3::X;
+const Y: DVec3 = DVec3::Y;
+const Z: DVec3 = DVec3::Z;
+
+fn photons(samples: u32, seed: u64) -> ResolvedSettings {
+    ResolvedSettings { tracer: TracerKind::Photon, depth: u32::MAX, samples, seed, ..settings([1, 1]) }
+}
+
+/// The mean of what is seen from a point of some others, by maps of three seeds.
+fn by(settings: impl Fn(u64) -> ResolvedSettings, world: &World, eye: DVec3, targets: &[DVec3]) -> f64 {
+    let (seeds, rays) = (3, 4096 / targets.len() as u32);
+    let mut sum = 0.0;
+    for seed in 0..seeds {
+        let tracer = tracer(TracerKind::Photon, world, &settings(seed)).expect("a tracer that is built");
+        for (i, target) in targets.iter().enumerate() {
+            let direction = (*target - eye).normalize();
+            let ray = Ray { origin: eye, direction, t_max: f64::INFINITY, kind: RayKind::Camera };
+            for sample in 0..rays {
+                sum += tracer.radiance(world, ray, &mut Sampler::new(seed, i as u32, 0, sample)).x;
+            }
+        }
+    }
+    sum / f64::from(rays * targets.len() as u32) / seeds as f64
+}
+
+fn agrees(world: &World, eye: DVec3, target: DVec3, exact: f64) {
+    let found = by(|seed| photons(24, seed), world, eye, &[target]);
+    assert!((found - exact).abs() < 0.01 * exact, "{found}, truly {exact}");
+}
+
+fn glowing_and(radiance: f64, albedo: f64) -> Arc<Material> {
+    layered(albedo, |l| l.emit = Texture::number(radiance))
+}
+
+#[test]
+fn closed_rooms_are_as_bright_as_their_series() {
+    for (albedo, exact) in [(0.5, 2.0), (0.8, 5.0)] {
+        let room = world(vec![object(sphere(DVec3::ZERO, 1.0), &glowing_and(1.0, albedo))]);
+        agrees(&room, DVec3::new(0.3, 0.1, -0.2), X, exact);
+    }
+}
+
+#[test]
+fn a_lamp_in_a_sphere_lights_all_of_it_anew_without_a_bias_of_the_nearest() {
+    let room = world(vec![object(sphere(DVec3::ZERO, 1.0), &diffuse(0.8)), point(0.5 * X, 1.0)]);
+    for (p, exact) in [(X, 2.037183), (-X, 1.131768), (Y, 1.200803)] {
+        agrees(&room, DVec3::new(0.0, 0.0, 0.2), p, exact);
+    }
+    let centred = world(vec![object(sphere(DVec3::ZERO, 1.0), &diffuse(0.5)), point(DVec3::ZERO, 1.0)]);
+    agrees(&centred, 0.2 * Z, X, 1.0 / PI);
+}
+
+#[test]
+fn spheres_in_one_another_light_each_other() {
+    let world = world(vec![
+        object(sphere(DVec3::ZERO, 0.5), &glowing_and(1.0, 0.5)),
+        object(sphere(DVec3::ZERO, 1.0), &diffuse(0.8)),
+    ]);
+    agrees(&world, 0.8 * X, DVec3::ZERO, 4.0 / 3.0);
+    agrees(&world, 0.8 * X, X, 2.0 / 3.0);
+}
+
+#[test]
+fn a_white_box_has_the_radiosity_of_its_form_factors() {
+    let h = 0.5;
+    let inward = |n: DVec3, a: DVec3| rect(DVec3::splat(h) - n * h, a * h, n.cross(a) * h);
+    for (albedo, floor, wall) in [(0.5, 0.19760, 0.17765), (0.8, 0.71306, 0.68366)] {
+        let walls =
+            [(X, Y), (-X, Y), (Z, Y), (-Z, Y), (Y, X)].map(|(n, a)| object(inward(n, a), &diffuse(albedo)));
+        let ceiling = object(inward(-Y, X), &glowing_and(1.0, albedo));
+        let room = world(walls.into_iter().chain([ceiling]).collect());
+        agrees(&room, DVec3::splat(h), DVec3::new(0.5, 0.0, 0.5), floor);
+        agrees(&room, DVec3::splat(h), DVec3::new(0.0, 0.5, 0.5), wall);
+    }
+}
+
+/// A plane under a slab of glass under the sun.
+fn under_glass() -> World {
+    let slab = cuboid(DVec3::new(-1.0, 1.0, -1.0), DVec3::new(1.0, 1.5, 1.0));
+    world(vec![object(plane(Y, 0.0), &diffuse(1.0)), object(slab, &glass(1.5)), sun(-Y, PI)])
+}
+
+#[test]
+fn sunlight_through_glass_is_found_though_no_path_can() {
+    let world = under_glass();
+    let eye = DVec3::new(2.5, 0.9, 0.0);
+    let targets: Vec<DVec3> =
+        (0..256).map(|i| DVec3::new((i % 16) as f64 - 7.5, 0.0, (i / 16) as f64 - 7.5) / 16.0).collect();
+    // Four segments: into the glass, out of it, to the eye. Each boundary passes 0.96.
+    let settings = |seed| ResolvedSettings { depth: 4, ..photons(16, seed) };
+    let found = by(settings, &world, eye, &targets);
+    assert!((found - 0.96 * 0.96).abs() < 0.01, "{found}");
+    let by_paths = ResolvedSettings { tracer: TracerKind::Path, ..settings(0) };
+    assert_eq!(seen_by(&by_paths, &world, eye, DVec3::ZERO).0, Rgb::ZERO);
+}
+
+#[test]
+fn photons_and_paths_agree_where_glass_gathers_the_light_of_a_lamp() {
+    let coated = layered(0.6, |l| {
+        l.reflect = Texture::number(0.05);
+        l.fresnel = Fresnel::Exact;
+    });
+    let world = world(vec![
+        object(sphere(DVec3::ZERO, 4.0), &diffuse(0.5)),
+        object(rect(-Y, 2.0 * Z, 2.0 * X), &coated),
+        object(sphere(0.3 * Y, 0.6), &glass(1.5)),
+        area(disc(DVec3::new(0.0, 2.5, 0.0), -Y, 0.8), 6.0, 1),
+    ]);
+    let eye = DVec3::new(2.5, 0.6, 0.5);
+    let at = |i: i32| f64::from(i) * 0.2 - 1.5;
+    let targets: Vec<DVec3> = (0..256).map(|i| DVec3::new(at(i % 16), -1.0, at(i / 16))).collect();
+    let found = by(|seed| photons(24, seed), &world, eye, &targets);
+    let paths = |target: &DVec3| {
+        let settings = ResolvedSettings { tracer: TracerKind::Path, ..photons(1024, 5) };
+        seen_by(&settings, &world, eye, *target).0.x
+    };
+    let truly = targets.iter().map(paths).sum::<f64>() / 256.0;
+    assert!((found - truly).abs() < 0.01 * truly, "{found} by photons, {truly} by paths");
+}
+
+#[test]
+fn photons_leave_the_same_picture_on_any_number_of_threads() {
+    let world = under_glass();
+    let of = |threads| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| {
+            let tracer = tracer(TracerKind::Photon, &world, &photons(16, 1)).unwrap();
+            let see = |i: u32| {
+                let direction =
+                    (DVec3::new(f64::from(i) / 64.0 - 0.5, 0.0, 0.1) - 0.9 * Y - 2.5 * X).normalize();
+                let ray =
+                    Ray { origin: 2.5 * X + 0.9 * Y, direction, t_max: f64::INFINITY, kind: RayKind::Camera };
+                tracer.radiance(&world, ray, &mut Sampler::new(1, i, 0, 0))
+            };
+            (0..64).map(see).collect::<Vec<Rgb>>()
+        })
+    };
+    let one = of(1);
+    assert!(one.iter().any(|c| c.x > 0.5), "the caustic is seen");
+    assert!([2, 3, 8].into_iter().all(|threads| of(threads) == one));
+}
