@@ -2,7 +2,7 @@
 //! of it with chapters of prose between.
 
 use super::builtins::{self, CHAPTERS, CONSTANTS};
-use super::coerce::{forms, listed};
+use super::coerce::forms;
 use super::kinds::{self, common};
 use super::members::{FAMILIES, Family, Member};
 use super::table::{Builtin, Kind, Property, Role};
@@ -158,10 +158,7 @@ fn functions_chapters(out: &mut String) {
 /// A chapter with what the tables know put into its places.
 fn prose(name: &str) -> String {
     let text = PROSE.iter().find(|(n, _, _)| *n == name).map_or("", |(_, _, text)| *text);
-    let unbuilt_functions: Vec<String> =
-        builtins::all().filter(|b| !b.is_built()).map(|b| format!("`{}`", b.name)).collect();
     text.replace("{common}\n", &property_table(common::of_role(Role::Object)))
-        .replace("{functions}", &listed(&unbuilt_functions, "and"))
 }
 
 fn kind_page(out: &mut String, kind: &Kind, level: usize) {
@@ -313,7 +310,7 @@ mod tests {
     #[test]
     fn no_place_of_a_chapter_stays_empty() {
         let whole = whole();
-        assert!(!["{common}", "{kinds}", "{functions}"].iter().any(|place| whole.contains(place)));
+        assert!(!["{common}", "{kinds}"].iter().any(|place| whole.contains(place)));
         for (name, title, _) in PROSE {
             assert!(whole.contains(&format!("## {title}\n")), "{name}");
         }

@@ -406,11 +406,6 @@ impl Builtin {
     pub fn gives_nothing(&self) -> bool {
         self.example.1 == "[]"
     }
-
-    /// Whether a call gives a value, and not only a warning that it is not built yet.
-    pub fn is_built(&self) -> bool {
-        !matches!(self.body, BuiltinBody::NotBuilt)
-    }
 }
 
 impl std::fmt::Debug for Property {
@@ -473,8 +468,6 @@ pub enum BuiltinBody {
     Numbers(ShapeOf, CallN),
     /// Anything else; arguments are in the order of the parameters, with defaults filled in and their places beside them.
     General(fn(&mut dyn Context, &Arguments<'_>) -> Outcome),
-    /// Nothing yet: a call is a warning, and what uses it is left out.
-    NotBuilt,
 }
 
 /// The arguments of a call of a builtin.

@@ -156,7 +156,7 @@ pub enum PatternKind {
     Ramp(Texture, Vec<(f64, Texture)>),
     /// A picture by (u, v); (0, 0) is its bottom left.
     Image(ImagePattern),
-    /// Veins: not built before the light issue's pattern library unless listed in the reference.
+    /// Veins across the x axis.
     Marble(Texture, Texture),
     /// Rings about the y axis.
     Wood(Texture, Texture),

@@ -16,7 +16,7 @@ mod vectors;
 
 use super::coerce;
 use super::display::display;
-use super::table::{Arguments, Builtin, BuiltinBody, Context, Outcome, Reported, ShapeOf};
+use super::table::{Arguments, Builtin, BuiltinBody, Context, Outcome, ShapeOf};
 use super::value::{Value, vector};
 use crate::diag::{Code, Diagnostic, Span};
 use crate::math::field::{CallN, MAX_CALL};
@@ -142,20 +142,12 @@ pub fn call(ctx: &mut dyn Context, builtin: &'static Builtin, arguments: &Argume
         (BuiltinBody::Number3(f, _), _) => by_component(ctx, builtin, arguments, &|x| f(x[0], x[1], x[2]))?,
         (BuiltinBody::Numbers(shape, f), _) => numbers(ctx, builtin, arguments, *shape, *f)?,
         (BuiltinBody::General(f), _) => return f(ctx, arguments),
-        (BuiltinBody::NotBuilt, _) => return not_built(ctx, builtin, arguments.span),
     };
     if is_finite(&result) || !arguments.values.iter().all(is_finite) {
         Ok(result)
     } else {
         Err(ctx.fail(undefined(builtin, arguments)))
     }
-}
-
-fn not_built(ctx: &mut dyn Context, builtin: &Builtin, span: Span) -> Outcome {
-    let said = Diagnostic::new(Code::NotBuilt, span, format!("`{}` is not built yet", builtin.name))
-        .label("what uses it is left out");
-    ctx.report(said);
-    Err(Reported)
 }
 
 fn is_finite(value: &Value) -> bool {

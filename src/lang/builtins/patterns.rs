@@ -88,16 +88,22 @@ pub static ALL: &[Builtin] = &[
     Builtin::new(
         "marble",
         TWO_OR,
-        NotBuilt,
-        "Veins.",
-        ("marble(white, gray)", ""),
+        General(|ctx, arguments| {
+            let [a, b] = two(ctx, arguments)?;
+            made(ctx, PatternKind::Marble(a, b), arguments.span)
+        }),
+        "Veins: from `a` to `b` and back once a unit along x, displaced by four octaves of noise.",
+        ("marble(white, gray)", "a pattern"),
     ),
     Builtin::new(
         "wood",
         TWO_OR,
-        NotBuilt,
-        "Rings about the y axis.",
-        ("wood(maroon, olive)", ""),
+        General(|ctx, arguments| {
+            let [a, b] = two(ctx, arguments)?;
+            made(ctx, PatternKind::Wood(a, b), arguments.span)
+        }),
+        "Rings about the y axis, one unit thick, each from `a` within to `b` without, a tenth of a unit out of round.",
+        ("wood(maroon, olive)", "a pattern"),
     ),
 ];
 

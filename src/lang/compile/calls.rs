@@ -308,9 +308,7 @@ impl<'c> Compiler<'c> {
                     _ => Err(self.wrong_builtin(builtin, &values, span)),
                 }
             }
-            BuiltinBody::General(_) | BuiltinBody::NotBuilt => {
-                Err(self.wrong_builtin(builtin, &values, span))
-            }
+            BuiltinBody::General(_) => Err(self.wrong_builtin(builtin, &values, span)),
         }
     }
 
@@ -332,10 +330,7 @@ impl<'c> Compiler<'c> {
                 [Value::Number(x), Value::Number(y)] => Some((f(*x, *y), x.is_finite() && y.is_finite())),
                 _ => None,
             },
-            BuiltinBody::Number3(..)
-            | BuiltinBody::Numbers(..)
-            | BuiltinBody::General(_)
-            | BuiltinBody::NotBuilt => None,
+            BuiltinBody::Number3(..) | BuiltinBody::Numbers(..) | BuiltinBody::General(_) => None,
         };
         if let Some((x, finite)) = plain
             && (x.is_nan() || (finite && x.is_infinite()))
@@ -410,7 +405,7 @@ impl<'c> Compiler<'c> {
     fn wrong_builtin(&self, builtin: &Builtin, values: &[Symbol], span: Span) -> super::Stop {
         let given: Vec<String> = values.iter().map(Symbol::shown).collect();
         match &builtin.body {
-            BuiltinBody::General(_) | BuiltinBody::NotBuilt => self
+            BuiltinBody::General(_) => self
                 .refuse(Code::NotSampled, span, format!("`{}` cannot run while rendering", builtin.name))
                 .hint("compute it outside and let the function take it along")
                 .into(),

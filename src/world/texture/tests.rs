@@ -57,6 +57,31 @@ fn stripes_go_round_also_below_zero() {
 }
 
 #[test]
+fn rings_of_wood_rise_outward_and_stand_a_unit_apart_but_for_a_tenth() {
+    let (a, b) = black_and_white();
+    let wood = pattern(PatternKind::Wood(a, b));
+    let grain = |r: f64| number(&wood, &at(DVec3::new(0.6 * r, 0.37, 0.8 * r))).unwrap();
+    for i in 0..900 {
+        let r = 0.5 + f64::from(i) * 0.01;
+        let off = (grain(r) - r).rem_euclid(1.0);
+        assert!(off.min(1.0 - off) <= 0.1, "{r}: {}", grain(r));
+    }
+}
+
+#[test]
+fn veins_of_marble_turn_once_a_unit_on_the_whole() {
+    let (a, b) = black_and_white();
+    let marble = pattern(PatternKind::Marble(a, b));
+    let seen: Vec<f64> = (0..20_000)
+        .map(|i| number(&marble, &at(DVec3::new(f64::from(i) * 1e-3, 0.4, 0.7))).unwrap())
+        .collect();
+    let mean = seen.iter().sum::<f64>() / seen.len() as f64;
+    // Over twenty units the wave passes the middle twice in each; noise adds some passes where it outruns x, and loses none.
+    let passes = seen.windows(2).filter(|w| (w[0] < 0.5) != (w[1] < 0.5)).count();
+    assert!((mean - 0.5).abs() < 0.1 && (38..120).contains(&passes), "{mean}, {passes}");
+}
+
+#[test]
 fn noise_is_that_of_the_language_and_all_mixtures_stay_between() {
     type Make = fn(Texture, Texture) -> PatternKind;
     let makes: [Make; 3] = [PatternKind::Noise, PatternKind::Marble, PatternKind::Wood];
