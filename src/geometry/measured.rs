@@ -13,7 +13,7 @@ use std::sync::OnceLock;
 
 /// What a path is made of.
 #[derive(Clone, Debug)]
-pub enum Made<P> {
+pub enum Made<P: Point> {
     /// Cubic pieces.
     Spline(Curve<P>),
     /// A function.
@@ -22,7 +22,7 @@ pub enum Made<P> {
 
 /// A path with its lengths and frames. Shared by all that hold it, on any thread.
 #[derive(Debug)]
-pub struct Measured<P> {
+pub struct Measured<P: Point> {
     made: Made<P>,
     lengths: OnceLock<ArcLength>,
     frames: OnceLock<Frames>,

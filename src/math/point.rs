@@ -22,6 +22,9 @@ pub trait Point:
     /// How many coordinates.
     const DIMENSION: usize;
 
+    /// The same as an array, with places added where that fills vector registers.
+    type Lanes: Lanes;
+
     /// One coordinate; `axis` below [`Point::DIMENSION`].
     fn coordinate(self, axis: usize) -> f64;
 
@@ -83,6 +86,36 @@ pub trait Point:
     }
 }
 
+/// Numbers side by side, so that what is done to each is done to several at once.
+pub trait Lanes: Copy + Debug + PartialEq + Send + Sync + 'static {
+    /// One of them.
+    fn lane(&self, i: usize) -> f64;
+
+    /// From each of them. A loop, which the compiler turns into steps of two or four.
+    fn of(lane: impl FnMut(usize) -> f64) -> Self;
+
+    /// The coordinates of a point, and zeros.
+    fn of_point<P: Point<Lanes = Self>>(point: P) -> Self {
+        Self::of(|i| if i < P::DIMENSION { point.coordinate(i) } else { 0.0 })
+    }
+}
+
+impl<const N: usize> Lanes for [f64; N] {
+    #[inline(always)]
+    fn lane(&self, i: usize) -> f64 {
+        self[i]
+    }
+
+    #[inline(always)]
+    fn of(mut lane: impl FnMut(usize) -> f64) -> Self {
+        let mut lanes = [0.0; N];
+        for (i, to) in lanes.iter_mut().enumerate() {
+            *to = lane(i);
+        }
+        lanes
+    }
+}
+
 /// Squares above this lose nothing to underflow: 2⁻⁹⁶⁰, so that a sum of three keeps all 53 bits.
 const SMALLEST_SAFE_SQUARE: f64 = 1.026e-289;
 
@@ -93,6 +126,8 @@ fn truncated(x: f64) -> f64 {
 
 impl Point for f64 {
     const DIMENSION: usize = 1;
+
+    type Lanes = [f64; 1];
 
     fn coordinate(self, _axis: usize) -> f64 {
         self
@@ -115,6 +150,8 @@ impl Point for f64 {
 impl Point for DVec2 {
     const DIMENSION: usize = 2;
 
+    type Lanes = [f64; 2];
+
     fn coordinate(self, axis: usize) -> f64 {
         self[axis]
     }
@@ -136,6 +173,8 @@ impl Point for DVec2 {
 
 impl Point for DVec3 {
     const DIMENSION: usize = 3;
+
+    type Lanes = [f64; 4];
 
     fn coordinate(self, axis: usize) -> f64 {
         self[axis]
@@ -171,5 +210,12 @@ mod tests {
         assert_eq!(tiny.unit(), Some(DVec3::Y));
         assert_eq!(DVec3::ZERO.unit(), None);
         assert_eq!((-2.0f64).unit(), Some(-1.0));
+    }
+
+    #[test]
+    fn lanes_hold_the_coordinates_and_zeros() {
+        assert_eq!(Lanes::of_point(DVec3::new(0.1, -7.0, 3.0)), [0.1, -7.0, 3.0, 0.0]);
+        assert_eq!(Lanes::of_point(-2.0f64), [-2.0]);
+        assert_eq!(<[f64; 3]>::of(|i| i as f64), [0.0, 1.0, 2.0]);
     }
 }

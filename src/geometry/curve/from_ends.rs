@@ -4,12 +4,13 @@
 
 use crate::math::Point;
 use crate::math::dd::{Dd, Factor, two_sum};
+use crate::math::point::Lanes;
 
 /// Coefficients of a cubic in powers of the distance from its start, and from its end, made once.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct FromEnds<P> {
-    start: [Dd<P>; 4],
-    end: [Dd<P>; 4],
+pub(crate) struct FromEnds<P: Point> {
+    start: [Dd<P::Lanes>; 4],
+    end: [Dd<P::Lanes>; 4],
 }
 
 /// A place between 0 and 1 by its distance from the nearer of the two, at most ½.
@@ -35,9 +36,10 @@ impl<P: Point> FromEnds<P> {
         let d = [b[1] - b[0], b[2] - b[1], b[3] - b[2]];
         let e = [d[1] - d[0], d[2] - d[1]];
         let f = e[1] - e[0];
+        let lanes = |c: [Dd<P>; 4]| c.map(|c| Dd { hi: Lanes::of_point(c.hi), lo: Lanes::of_point(c.lo) });
         FromEnds {
-            start: [b[0], d[0].scaled(3.0), e[0].scaled(3.0), f],
-            end: [b[3], d[2].scaled(-3.0), e[1].scaled(3.0), -f],
+            start: lanes([b[0], d[0].scaled(3.0), e[0].scaled(3.0), f]),
+            end: lanes([b[3], d[2].scaled(-3.0), e[1].scaled(3.0), -f]),
         }
     }
 
@@ -45,15 +47,26 @@ impl<P: Point> FromEnds<P> {
     /// split.
     #[inline]
     pub fn at(&self, place: Nearer) -> P {
-        let (coefficients, s) = (if place.from_start { &self.start } else { &self.end }, place.distance);
-        let by_s = Factor::new(s.hi);
-        let Dd { hi: mut value, lo: mut rest } = coefficients[3];
-        for c in coefficients[..3].iter().rev() {
-            let (product, product_error) = by_s.times(value);
-            let (sum, sum_error) = two_sum(product, c.hi);
-            rest = (rest * s.hi + value * s.lo) + ((product_error + sum_error) + c.lo);
-            value = sum;
-        }
-        value + rest
+        let lanes = nested(if place.from_start { &self.start } else { &self.end }, place.distance);
+        P::from_coordinates(|axis| lanes.lane(axis))
     }
+}
+
+/// All coordinates side by side: kept apart, so that the loop over them is seen to be one.
+#[inline(never)]
+fn nested<L: Lanes>(coefficients: &[Dd<L>; 4], s: Dd) -> L {
+    let by_s = Factor::new(s.hi);
+    L::of(|i| {
+        let at = |k: usize| Dd { hi: coefficients[k].hi.lane(i), lo: coefficients[k].lo.lane(i) };
+        let sum = step(step(step(at(3), at(2), s, by_s), at(1), s, by_s), at(0), s, by_s);
+        sum.hi + sum.lo
+    })
+}
+
+/// A sum and its rest, times s, plus a coefficient.
+#[inline(always)]
+fn step(sum: Dd, c: Dd, s: Dd, by_s: Factor) -> Dd {
+    let (product, product_error) = by_s.times(sum.hi);
+    let (hi, sum_error) = two_sum(product, c.hi);
+    Dd { hi, lo: (sum.lo * s.hi + sum.hi * s.lo) + ((product_error + sum_error) + c.lo) }
 }

@@ -36,7 +36,7 @@ use crate::math::Point;
 
 /// A chain of cubics over strictly increasing breakpoints.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Curve<P> {
+pub struct Curve<P: Point> {
     pieces: Vec<Piece<P>>,
     /// First and last parameter.
     domain: (f64, f64),
@@ -171,7 +171,7 @@ impl<P: Point> Curve<P> {
     #[inline(always)]
     pub fn at_inside(&self, t: f64) -> Option<P> {
         let (start, end) = self.domain;
-        (t >= start && t <= end).then(|| self.piece_at(t).at(t))
+        (t >= start && t <= end).then(|| self.piece_at(t).at_inside(t))
     }
 
     /// γ(t) by another method than the default.

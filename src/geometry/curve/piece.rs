@@ -6,11 +6,13 @@ use crate::math::{Dd, Point};
 
 /// A cubic over `[start, end]`. Its Bézier points are kept to 106 bits, so that a change of basis or a split costs no accuracy.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Piece<P> {
+pub struct Piece<P: Point> {
     start: f64,
     end: f64,
     /// 1 / (end − start).
     per_width: Dd,
+    /// Whether that is 1, to the bit.
+    is_unit: bool,
     bezier: [Dd<P>; 4],
     from_ends: FromEnds<P>,
     /// Bézier points of γ′, rounded: the fast way to speeds.
@@ -23,7 +25,8 @@ impl<P: Point> Piece<P> {
         let per_width = Dd::from(1.0).over(Dd::difference(end, start));
         let slope = |i: usize| (bezier[i + 1] - bezier[i]).scaled(3.0).times(per_width).value();
         let from_ends = FromEnds::new(&bezier);
-        Piece { start, end, per_width, bezier, from_ends, hodograph: [slope(0), slope(1), slope(2)] }
+        let is_unit = per_width == Dd::from(1.0);
+        Piece { start, end, per_width, is_unit, bezier, from_ends, hodograph: [slope(0), slope(1), slope(2)] }
     }
 
     /// First parameter.
@@ -76,13 +79,14 @@ impl<P: Point> Piece<P> {
     /// γ(t), for any real t: outside the piece's interval the cubic goes on.
     #[inline]
     pub fn at(&self, t: f64) -> P {
-        if t >= self.start && t <= self.end {
-            let value = self.from_ends.at(self.nearer(t));
-            if value.is_finite() {
-                return value;
-            }
-        }
-        self.at_by_triangle(t)
+        if t >= self.start && t <= self.end { self.at_inside(t) } else { self.at_by_triangle(t) }
+    }
+
+    /// The same for t in the piece's interval.
+    #[inline]
+    pub(crate) fn at_inside(&self, t: f64) -> P {
+        let value = self.from_ends.at(self.nearer(t));
+        if value.is_finite() { value } else { self.at_by_triangle(t) }
     }
 
     /// The same by de Casteljau's triangle, which serves any t.
@@ -102,7 +106,7 @@ impl<P: Point> Piece<P> {
         let from_start = t - self.start <= self.end - t;
         let way = if from_start { Dd::difference(t, self.start) } else { Dd::difference(self.end, t) };
         // The product by 1 is the factor, to the bit: breakpoints one apart are common.
-        let distance = if self.per_width == Dd::from(1.0) { way } else { way.times(self.per_width) };
+        let distance = if self.is_unit { way } else { way.times(self.per_width) };
         Nearer { from_start, distance }
     }
 

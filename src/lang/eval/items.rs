@@ -130,13 +130,14 @@ impl<'p> Evaluator<'p> {
     fn assign(&mut self, access: Access, value: &'p Expr) -> Outcome<()> {
         let value = self.plain_in_place_of(access, value);
         if let Access::Local(_) | Access::Global(_) = access {
+            let vector = self.vector;
             match (value, self.slot(access)) {
                 (Plain::Number(x), Slot::Value(Value::Number(old))) => {
                     *old = x;
                     return Ok(());
                 }
-                (Plain::Vector(v), Slot::Value(Value::Vector3(old))) => {
-                    *old = v;
+                (Plain::Vector, Slot::Value(Value::Vector3(old))) => {
+                    *old = vector;
                     return Ok(());
                 }
                 _ => {}

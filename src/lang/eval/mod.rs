@@ -33,6 +33,7 @@ use crate::diag::{Sink, SourceId, Span};
 use crate::scene::assets::Loader;
 use crate::scene::{Camera, Figure, Node, RenderSettings, Scene};
 use carried::{Carried, Models};
+use glam::DVec3;
 use guards::Guards;
 use nested::Nested;
 use slots::{Captured, Slot};
@@ -202,6 +203,8 @@ struct Evaluator<'p> {
     returned: Option<Outcome>,
     /// A value that the fast path of numbers could not carry.
     spilled: Outcome,
+    /// A vector on the fast path of vectors.
+    vector: DVec3,
     /// What the last number of a member may be off by, where it said so.
     estimate: Option<f64>,
     top: Top,
@@ -227,6 +230,7 @@ impl<'p> Evaluator<'p> {
             calls: Vec::new(),
             returned: None,
             spilled: Err(Reported),
+            vector: DVec3::ZERO,
             estimate: None,
             top: Top::default(),
             guards: Guards::new(&run.limits, run.stack),

@@ -24,30 +24,44 @@ impl<'p> Evaluator<'p> {
         }
     }
 
+    /// Leaps to what knows the expression: each is kept apart, so that none pays for the frame of another.
+    #[inline]
     fn number_of_compound(&mut self, e: &'p Expr) -> Option<f64> {
         match &e.kind {
-            ExprKind::Arithmetic(op, operands) => self.number_of_arithmetic(*op, operands, e.span),
-            ExprKind::CallNumber(builtin, f, argument) => self.number_of_call(builtin, *f, argument, e.span),
-            ExprKind::Negate(operand) => match self.number(operand) {
-                Some(x) => Some(-x),
-                None => {
-                    let value = self.spilled();
-                    let negated =
-                        value.and_then(|v| operators::negate(&v, e.span).map_err(|said| self.fail(*said)));
-                    self.spill(negated)
-                }
-            },
-            ExprKind::Component(i, base) => match &base.kind {
-                ExprKind::Name(access) => match self.slot_of(*access) {
-                    Some(Slot::Value(Value::Vector3(v))) if *i < 3 => Some(v[usize::from(*i)]),
-                    _ => self.other(e),
-                },
-                _ => self.other(e),
-            },
-            ExprKind::CallBuiltin(call) => match (&call.builtin.body, &call.arguments[..]) {
-                (BuiltinBody::Number2(f), [(0, a), (1, b)]) => self.number_of_two(call, *f, (a, b), e.span),
-                _ => self.other(e),
-            },
+            ExprKind::Arithmetic(op, operands) => self.number_of_arithmetic(e, *op, operands),
+            ExprKind::CallNumber(builtin, f, argument) => self.number_of_call(e, builtin, *f, argument),
+            ExprKind::CallBuiltin(call) => self.number_of_builtin(e, call),
+            ExprKind::Negate(operand) => self.number_of_negated(e, operand),
+            ExprKind::Component(i, base) => self.number_of_component(e, *i, base),
+            _ => self.other(e),
+        }
+    }
+
+    #[inline(never)]
+    fn number_of_negated(&mut self, e: &'p Expr, operand: &'p Expr) -> Option<f64> {
+        if let Some(x) = self.number(operand) {
+            return Some(-x);
+        }
+        let value = self.spilled();
+        let negated = value.and_then(|v| operators::negate(&v, e.span).map_err(|said| self.fail(*said)));
+        self.spill(negated)
+    }
+
+    #[inline(never)]
+    fn number_of_component(&mut self, e: &'p Expr, i: u8, base: &'p Expr) -> Option<f64> {
+        if let ExprKind::Name(access) = &base.kind
+            && let Some(Slot::Value(Value::Vector3(v))) = self.slot_of(*access)
+            && i < 3
+        {
+            return Some(v[usize::from(i)]);
+        }
+        self.other(e)
+    }
+
+    #[inline(never)]
+    fn number_of_builtin(&mut self, e: &'p Expr, call: &'p CallBuiltin) -> Option<f64> {
+        match (&call.builtin.body, &call.arguments[..]) {
+            (BuiltinBody::Number2(f), [(0, a), (1, b)]) => self.number_of_two(call, *f, (a, b), e.span),
             _ => self.other(e),
         }
     }
@@ -62,22 +76,31 @@ impl<'p> Evaluator<'p> {
         }
     }
 
-    #[inline]
+    #[inline(never)]
     fn number_of_arithmetic(
         &mut self,
+        e: &'p Expr,
         op: Arithmetic,
         operands: &'p (Expr, Expr),
-        span: Span,
     ) -> Option<f64> {
-        let Some(a) = self.number(&operands.0) else { return self.mixed_left(op, &operands.1, span) };
-        let Some(b) = self.number(&operands.1) else {
-            let b = self.spilled();
-            return self.mixed(op, Ok(Value::Number(a)), b, span);
-        };
+        let Some(a) = self.number(&operands.0) else { return self.mixed_left(op, &operands.1, e.span) };
+        let Some(b) = self.number(&operands.1) else { return self.mixed_right(op, a, e.span) };
         let result = operators::number(op, a, b);
         if result.is_finite() {
             return Some(result);
         }
+        self.mixed_numbers(op, a, b, e.span)
+    }
+
+    #[inline(never)]
+    fn mixed_right(&mut self, op: Arithmetic, a: f64, span: Span) -> Option<f64> {
+        let b = self.spilled();
+        self.mixed(op, Ok(Value::Number(a)), b, span)
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn mixed_numbers(&mut self, op: Arithmetic, a: f64, b: f64, span: Span) -> Option<f64> {
         self.mixed(op, Ok(Value::Number(a)), Ok(Value::Number(b)), span)
     }
 
@@ -85,9 +108,9 @@ impl<'p> Evaluator<'p> {
     fn mixed_left(&mut self, op: Arithmetic, right: &'p Expr, span: Span) -> Option<f64> {
         let a = self.spilled();
         if let Ok(Value::Vector3(u)) = a {
-            return match self.plain_arithmetic(op, Plain::Vector(u), right, span) {
+            return match self.plain_beside(op, u, right, span) {
                 Plain::Number(x) => Some(x),
-                Plain::Vector(v) => self.spill(Ok(Value::Vector3(v))),
+                Plain::Vector => self.spill(Ok(Value::Vector3(self.vector))),
                 Plain::Spilled => None,
             };
         }
@@ -105,25 +128,33 @@ impl<'p> Evaluator<'p> {
         self.spill(joined)
     }
 
-    #[inline]
+    #[inline(never)]
     fn number_of_call(
         &mut self,
+        e: &'p Expr,
         builtin: &'static Builtin,
         f: fn(f64) -> f64,
         argument: &'p Expr,
-        span: Span,
     ) -> Option<f64> {
-        let value = match self.number(argument) {
-            Some(x) => {
-                let result = f(x);
-                if result.is_finite() {
-                    return Some(result);
-                }
-                Ok(Value::Number(x))
-            }
-            None => self.spilled(),
-        };
-        let called = value.and_then(|value| self.call_table(builtin, &[value], &[argument.span], span));
+        let given = self.number(argument);
+        if let Some(result) = given.map(f)
+            && result.is_finite()
+        {
+            return Some(result);
+        }
+        self.value_of_call(e, builtin, given, argument)
+    }
+
+    #[inline(never)]
+    fn value_of_call(
+        &mut self,
+        e: &'p Expr,
+        builtin: &'static Builtin,
+        given: Option<f64>,
+        argument: &'p Expr,
+    ) -> Option<f64> {
+        let value = given.map_or_else(|| self.spilled(), |x| Ok(Value::Number(x)));
+        let called = value.and_then(|value| self.call_table(builtin, &[value], &[argument.span], e.span));
         self.spill(called)
     }
 

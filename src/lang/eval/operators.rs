@@ -29,15 +29,20 @@ pub fn number(op: Arithmetic, a: f64, b: f64) -> f64 {
 }
 
 /// One operation on two vectors, component by component. May be infinite or NaN.
-#[inline]
+#[inline(always)]
 pub fn vector3(op: Arithmetic, u: DVec3, v: DVec3) -> DVec3 {
     match op {
         Arithmetic::Add => u + v,
         Arithmetic::Subtract => u - v,
         Arithmetic::Multiply => u * v,
         Arithmetic::Divide => u / v,
-        Arithmetic::Remainder | Arithmetic::Power => zip3(u, v, |x, y| number(op, x, y)),
+        Arithmetic::Remainder | Arithmetic::Power => vector3_by_numbers(op, u, v),
     }
+}
+
+#[inline(never)]
+fn vector3_by_numbers(op: Arithmetic, u: DVec3, v: DVec3) -> DVec3 {
+    zip3(u, v, |x, y| number(op, x, y))
 }
 
 /// aᵇ: by repeated products where b is a small whole number.

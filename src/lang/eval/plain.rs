@@ -1,5 +1,5 @@
-//! The fast path of arithmetic on vectors, beside that of numbers: both travel by value, without a place in a [`Value`]. What is neither is
-//! set aside as there, and the general path goes on with it.
+//! The fast path of arithmetic on vectors, beside that of numbers: numbers travel in registers, a vector in a place of its own, neither in a
+//! [`Value`]. What is neither is set aside as there, and the general path goes on with it.
 
 use super::Evaluator;
 use super::operators;
@@ -15,7 +15,8 @@ use glam::DVec3;
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Plain {
     Number(f64),
-    Vector(DVec3),
+    /// In [`Evaluator::vector`].
+    Vector,
     /// Another value, or a failure: in [`Evaluator::spilled`].
     Spilled,
 }
@@ -36,24 +37,37 @@ impl<'p> Evaluator<'p> {
         if let ExprKind::Name(access) = &e.kind {
             match self.slot_of(*access) {
                 Some(Slot::Value(Value::Number(x))) => return Plain::Number(*x),
-                Some(Slot::Value(Value::Vector3(v))) => return Plain::Vector(*v),
+                Some(Slot::Value(Value::Vector3(v))) => {
+                    self.vector = *v;
+                    return Plain::Vector;
+                }
                 _ => {}
             }
         }
         self.plain_of_compound(e)
     }
 
+    /// Leaps to what knows the expression.
+    #[inline]
     fn plain_of_compound(&mut self, e: &'p Expr) -> Plain {
         match &e.kind {
-            ExprKind::Arithmetic(op, operands) => {
-                let a = self.plain(&operands.0);
-                self.plain_arithmetic(*op, a, &operands.1, e.span)
-            }
-            ExprKind::CallValue(call) => match self.point_of_call(call, e.span) {
-                Some(point) => point,
-                None => self.plain_of_other(e),
-            },
+            ExprKind::Arithmetic(op, operands) => self.plain_of_arithmetic(e, *op, operands),
+            ExprKind::CallValue(call) => self.plain_of_call(e, call),
             _ => self.plain_of_other(e),
+        }
+    }
+
+    #[inline(never)]
+    fn plain_of_arithmetic(&mut self, e: &'p Expr, op: Arithmetic, operands: &'p (Expr, Expr)) -> Plain {
+        let a = self.plain(&operands.0);
+        self.plain_arithmetic(op, a, &operands.1, e.span)
+    }
+
+    #[inline(never)]
+    fn plain_of_call(&mut self, e: &'p Expr, call: &'p CallValue) -> Plain {
+        match self.point_of_call(call, e.span) {
+            Some(point) => point,
+            None => self.plain_of_other(e),
         }
     }
 
@@ -68,37 +82,73 @@ impl<'p> Evaluator<'p> {
     fn plain_of(&mut self, number: Option<f64>) -> Plain {
         match (number, &self.spilled) {
             (Some(x), _) => Plain::Number(x),
-            (None, Ok(Value::Vector3(v))) => Plain::Vector(*v),
+            (None, Ok(Value::Vector3(v))) => {
+                self.vector = *v;
+                Plain::Vector
+            }
             (None, _) => Plain::Spilled,
         }
     }
 
     /// `a op right`.
-    #[inline]
-    pub(super) fn plain_arithmetic(
-        &mut self,
-        op: Arithmetic,
-        a: Plain,
-        right: &'p Expr,
-        span: Span,
-    ) -> Plain {
-        if let Plain::Spilled = a {
-            let (a, b) = (self.spilled(), self.plain(right));
-            return self.plain_mixed(op, a, b, span);
-        }
+    #[inline(always)]
+    fn plain_arithmetic(&mut self, op: Arithmetic, a: Plain, right: &'p Expr, span: Span) -> Plain {
+        let a = match a {
+            Plain::Number(x) => Operand::Number(x),
+            Plain::Vector => Operand::Vector(self.vector),
+            Plain::Spilled => return self.plain_after_spilled(op, right, span),
+        };
         let b = self.plain(right);
-        if let (Plain::Vector(u), Plain::Vector(v)) = (a, b) {
-            let joined = operators::vector3(op, u, v);
+        if let (Operand::Vector(u), Plain::Vector) = (a, b) {
+            let joined = operators::vector3(op, u, self.vector);
             if joined.is_finite() {
-                return Plain::Vector(joined);
+                self.vector = joined;
+                return Plain::Vector;
             }
         }
-        let joined = joined(op, a, b);
-        if joined.is_finite() {
-            return joined;
-        }
-        let a = self.outcome_of(a);
+        self.plain_joined(op, a, b, span)
+    }
+
+    #[inline(never)]
+    fn plain_after_spilled(&mut self, op: Arithmetic, right: &'p Expr, span: Span) -> Plain {
+        let (a, b) = (self.spilled(), self.plain(right));
         self.plain_mixed(op, a, b, span)
+    }
+
+    /// `a op b`; a number beside a vector stands for every component.
+    #[inline(never)]
+    fn plain_joined(&mut self, op: Arithmetic, a: Operand, b: Plain, span: Span) -> Plain {
+        let splat = DVec3::splat;
+        let joined = match (a, b) {
+            (Operand::Number(x), Plain::Number(y)) => Operand::Number(operators::number(op, x, y)),
+            (Operand::Vector(u), Plain::Vector) => Operand::Vector(operators::vector3(op, u, self.vector)),
+            (Operand::Vector(u), Plain::Number(y)) => Operand::Vector(operators::vector3(op, u, splat(y))),
+            (Operand::Number(x), Plain::Vector) => {
+                Operand::Vector(operators::vector3(op, splat(x), self.vector))
+            }
+            (_, Plain::Spilled) => Operand::Number(f64::NAN),
+        };
+        match joined {
+            Operand::Number(x) if x.is_finite() => Plain::Number(x),
+            Operand::Vector(v) if v.is_finite() => {
+                self.vector = v;
+                Plain::Vector
+            }
+            Operand::Number(_) | Operand::Vector(_) => {
+                let a = match a {
+                    Operand::Number(x) => Value::Number(x),
+                    Operand::Vector(u) => Value::Vector3(u),
+                };
+                self.plain_mixed(op, Ok(a), b, span)
+            }
+        }
+    }
+
+    /// `u op right`.
+    #[inline(never)]
+    pub(super) fn plain_beside(&mut self, op: Arithmetic, u: DVec3, right: &'p Expr, span: Span) -> Plain {
+        self.vector = u;
+        self.plain_arithmetic(op, Plain::Vector, right, span)
     }
 
     #[inline(never)]
@@ -113,14 +163,14 @@ impl<'p> Evaluator<'p> {
     pub(super) fn outcome_of(&mut self, plain: Plain) -> Outcome {
         match plain {
             Plain::Number(x) => Ok(Value::Number(x)),
-            Plain::Vector(v) => Ok(Value::Vector3(v)),
+            Plain::Vector => Ok(Value::Vector3(self.vector)),
             Plain::Spilled => self.spilled(),
         }
     }
 
     /// A named curve called with a number: the commonest call of a value in a loop, made without a copy of the curve. None where it is
     /// another call, of which nothing was evaluated then.
-    #[inline]
+    #[inline(always)]
     pub(super) fn point_of_call(&mut self, call: &'p CallValue, span: Span) -> Option<Plain> {
         let (ExprKind::Name(access), Some(argument)) = (&call.callee.kind, call.steady_argument()) else {
             return None;
@@ -129,20 +179,29 @@ impl<'p> Evaluator<'p> {
         let given = self.number(argument);
         // Still the same one, as the argument could not assign to it.
         let Some(Slot::Value(Value::Curve(curve))) = self.slot_of(*access) else { return None };
-        let point = match (given, curve) {
-            (Some(t), AnyCurve::Space(c)) => c.at_inside(t).map(Plain::Vector),
-            (Some(t), AnyCurve::Numbers(c)) => c.at_inside(t).map(Plain::Number),
-            (Some(_), AnyCurve::Plane(_)) | (None, _) => None,
-        };
-        if point.is_some() {
-            return point;
+        match (given, curve) {
+            (Some(t), AnyCurve::Space(c)) => {
+                if let Some(point) = c.at_inside(t) {
+                    self.vector = point;
+                    return Some(Plain::Vector);
+                }
+            }
+            (Some(t), AnyCurve::Numbers(c)) => {
+                if let Some(point) = c.at_inside(t) {
+                    return Some(Plain::Number(point));
+                }
+            }
+            (Some(_), AnyCurve::Plane(_)) | (None, _) => {}
         }
-        let curve = curve.clone();
-        Some(self.point_of_any(&curve, given, argument.span, span))
+        Some(self.point_of_any(*access, given, argument.span, span))
     }
 
     #[inline(never)]
-    fn point_of_any(&mut self, curve: &AnyCurve, given: Option<f64>, place: Span, span: Span) -> Plain {
+    fn point_of_any(&mut self, curve: Access, given: Option<f64>, place: Span, span: Span) -> Plain {
+        let Some(Slot::Value(Value::Curve(curve))) = self.slot_of(curve) else {
+            unreachable!("a steady argument leaves the curve where it is")
+        };
+        let curve = &curve.clone();
         let given = given.map_or_else(|| self.spilled(), |t| Ok(Value::Number(t)));
         let point = given.and_then(|given| self.call_curve(curve, given, place, span));
         let number = self.spill(point);
@@ -150,26 +209,9 @@ impl<'p> Evaluator<'p> {
     }
 }
 
-impl Plain {
-    /// True of a finite number or vector.
-    #[inline]
-    fn is_finite(self) -> bool {
-        match self {
-            Plain::Number(x) => x.is_finite(),
-            Plain::Vector(v) => v.is_finite(),
-            Plain::Spilled => false,
-        }
-    }
-}
-
-/// `a op b`; a number beside a vector stands for every component.
-#[inline]
-fn joined(op: Arithmetic, a: Plain, b: Plain) -> Plain {
-    match (a, b) {
-        (Plain::Number(x), Plain::Number(y)) => Plain::Number(operators::number(op, x, y)),
-        (Plain::Vector(u), Plain::Vector(v)) => Plain::Vector(operators::vector3(op, u, v)),
-        (Plain::Vector(u), Plain::Number(y)) => Plain::Vector(operators::vector3(op, u, DVec3::splat(y))),
-        (Plain::Number(x), Plain::Vector(v)) => Plain::Vector(operators::vector3(op, DVec3::splat(x), v)),
-        (Plain::Spilled, _) | (_, Plain::Spilled) => Plain::Spilled,
-    }
+/// What stands on the left while the right is computed.
+#[derive(Clone, Copy, Debug)]
+enum Operand {
+    Number(f64),
+    Vector(DVec3),
 }
