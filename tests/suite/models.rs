@@ -448,7 +448,7 @@ assert(later.skeleton.neck.position != swaying.skeleton.neck.position)
     assert!(run.stderr.contains("of another skeleton"), "{}", run.stderr);
     let clip = r#"pose p { of still.skeleton  clip "sway"  at 1 }"#;
     let run = with_reed(&format!("{STILL}{clip} still")).ogee("check a.scene").expect(1);
-    assert!(run.stderr.contains("a model's clip is the model's"), "{}", run.stderr);
+    assert!(run.stderr.contains("a model's clip is"), "{}", run.stderr);
 }
 
 #[test]
