@@ -79,7 +79,12 @@ fn cannot_change(base: &Value, span: Span) -> Diagnostic {
             coerce::shown(base)
         ),
     )
-    .hint("for a list write `[e with { … } for e in list]`")
+    .hint(match base {
+        Value::Skeleton(_) | Value::Pose(_) => {
+            "pose it instead: `pose bent { of arm  elbow 40 }`, of a skeleton or of a pose"
+        }
+        _ => "for a list write `[e with { … } for e in list]`",
+    })
 }
 
 /// Where a `with` stands: its base, and all of it.

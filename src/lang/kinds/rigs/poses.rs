@@ -111,8 +111,8 @@ fn captured(ctx: &mut dyn Context, block: &Block, from: &Stance) -> Outcome<Vec<
 }
 
 /// What has a moment to ask for.
-const MOVING: &str = "a skeleton of motion capture has: `skeleton man { file \"walk.bvh\" }`; a model's clip is the model's: \
-                      `let man = model { file \"man.glb\"  clip \"walk\"  at 0.6 }`, and then `man.skeleton`";
+const MOVING: &str = "only motion capture moves a skeleton, as in `skeleton man { file \"walk.bvh\" }`; for a clip of a model write \
+                      `let man = model { file \"man.glb\"  clip \"walk\"  at 0.6 }`, and pose `man.skeleton`";
 
 /// Puts the angles that are given by joints' names into the coordinates. Every fault is reported.
 fn given_joints(
