@@ -8,7 +8,7 @@ use ogee::render::Tracer;
 use ogee::render::camera::View;
 use ogee::render::film::Film;
 use ogee::render::sampler::Sampler;
-use ogee::render::settings::Crop;
+use ogee::render::settings::{Crop, ResolvedSettings};
 use ogee::render::tiles::{Picture, Progress, render, render_in_tiles};
 use ogee::scene::*;
 use ogee::world::{Ray, World};
@@ -118,20 +118,25 @@ fn bits(film: &Film) -> Vec<[u64; 3]> {
     film.pixels.iter().map(|p| p.to_array().map(f64::to_bits)).collect()
 }
 
-fn still(scale: f64) -> Film {
-    let mut settings = settings([48, 36]);
-    settings.samples = 4;
+fn still(scale: f64, tracer: TracerKind) -> Film {
+    let settings = ResolvedSettings { samples: 4, tracer, ..settings([48, 36]) };
     picture(&world(still_life(scale)), &still_camera(scale), &settings)
 }
 
+/// One tracer of each way to compute.
+const TRACERS: [TracerKind; 4] =
+    [TracerKind::Whitted, TracerKind::Path, TracerKind::MonteCarlo, TracerKind::Photon];
+
 #[test]
 fn a_scene_of_any_scale_gives_the_same_bits() {
-    let expected = still(1.0);
-    assert!(expected.mean().x > 0.05 && expected.mean().is_finite());
-    for power in [20, -20, 40, -40] {
-        let scaled = still(ogee::math::elementary::powi(2.0, power));
-        let differing = bits(&expected).iter().zip(&bits(&scaled)).filter(|(a, b)| a != b).count();
-        assert_eq!(differing, 0, "2^{power}");
+    for tracer in TRACERS {
+        let expected = still(1.0, tracer);
+        assert!(expected.mean().x > 0.05 && expected.mean().is_finite());
+        for power in [20, -20, 40, -40] {
+            let scaled = still(ogee::math::elementary::powi(2.0, power), tracer);
+            let differing = bits(&expected).iter().zip(&bits(&scaled)).filter(|(a, b)| a != b).count();
+            assert_eq!(differing, 0, "{tracer:?}, 2^{power}");
+        }
     }
 }
 
@@ -191,11 +196,14 @@ fn normals_that_cancel_leave_a_surface_as_bright_as_it_is() {
 
 #[test]
 fn threads_and_tiles_do_not_reach_a_pixel() {
+    TRACERS.into_iter().for_each(depends_on_nothing_but_the_scene);
+}
+
+fn depends_on_nothing_but_the_scene(tracer: TracerKind) {
     let world = world(still_life(1.0));
-    let mut settings = settings([70, 50]);
-    settings.samples = 4;
+    let mut settings = ResolvedSettings { samples: 4, tracer, ..settings([70, 50]) };
     let view = View::new(&still_camera(1.0), settings.size).unwrap();
-    let tracer = ogee::render::tracer(TracerKind::Whitted, &world, &settings).unwrap();
+    let tracer = ogee::render::tracer(tracer, &world, &settings).unwrap();
     let mut expected = None;
     for threads in [Some(1), Some(2), Some(3), Some(8), None] {
         for tile in [7, 16, 32] {
