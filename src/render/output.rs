@@ -59,8 +59,12 @@ pub struct Metadata {
     pub tracer: String,
     /// Samples per pixel.
     pub samples: u32,
+    /// Most segments of a path; 2³² − 1 is without end.
+    pub depth: u32,
     /// Of the random numbers.
     pub seed: u64,
+    /// How even they are.
+    pub sampler: String,
     /// Width and height of the whole picture.
     pub size: [u32; 2],
 }

@@ -1,12 +1,14 @@
 //! Random numbers: a function of (seed, pixel, sample, dimension) alone, so that a picture is the same for any number of
 //! threads, any order of tiles and any crop. Knows nothing of what the numbers are used for.
 //!
-//! Every pair of dimensions is one 2-D Sobol sequence over the samples of a pixel, shuffled and Owen-scrambled by hashes of
+//! Numbers of three kinds: by default, every pair of dimensions is one 2-D Sobol sequence over the samples of a pixel, shuffled and Owen-scrambled by hashes of
 //! (seed, pixel, dimension): "padding". Burley, *Practical Hash-based Owen Scrambling* (JCGT 9-4, 2020), with the permutation
 //! of Vegdahl's *Building a Better LK Hash* (2021); the second Sobol dimension as in Ahmed, *An Implementation Algorithm of
 //! 2D Sobol Sequence Fast, Elegant, and Compact* (EGSR 2024). Each pair alone is a scrambled (0, 2)-sequence: any 2ᵐ samples
-//! that begin at a multiple of 2ᵐ are stratified in every way that 2ᵐ boxes of equal area can stand.
+//! that begin at a multiple of 2ᵐ are stratified in every way that 2ᵐ boxes of equal area can stand. `stratified` has one point
+//! in each cell of a grid over all samples of the pixel, `independent` has points that know nothing of one another.
 
+use crate::scene::SamplerKind;
 use crate::world::texture::TextureFault;
 use glam::DVec2;
 
@@ -20,6 +22,9 @@ pub struct Sampler {
     pixel: Option<u64>,
     sample: u32,
     dimension: u32,
+    kind: SamplerKind,
+    /// Samples of the pixel, which a grid must know.
+    samples: u32,
     /// Rays cast for this sample.
     pub rays: RayCounts,
     /// The function of the scene that was undefined on the way, where one was. Such a pixel is shown magenta.
@@ -67,9 +72,16 @@ impl Sampler {
             pixel: None,
             sample,
             dimension: 0,
+            kind: SamplerKind::Sobol,
+            samples: 1,
             rays: RayCounts::default(),
             undefined: None,
         }
+    }
+
+    /// The same sample by numbers of another kind, of so many of its pixel.
+    pub fn of_kind(self, kind: SamplerKind, samples: u32) -> Sampler {
+        Sampler { kind, samples, ..self }
     }
 
     /// The next number, in (0, 1).
@@ -88,7 +100,8 @@ impl Sampler {
         let pixel = *self.pixel.get_or_insert_with(|| mix(mix(seed ^ GOLDEN).wrapping_add(mix(place))));
         let key = mix(pixel.wrapping_add(u64::from(self.dimension).wrapping_mul(GOLDEN)));
         self.dimension += 1;
-        PointSet { order: key as u32, scramble: mix(key ^ GOLDEN), sample: self.sample }
+        let Sampler { sample, kind, samples, .. } = *self;
+        PointSet { order: key as u32, scramble: mix(key ^ GOLDEN), sample, kind, samples }
     }
 }
 
@@ -99,15 +112,58 @@ pub struct PointSet {
     order: u32,
     scramble: u64,
     sample: u32,
+    kind: SamplerKind,
+    samples: u32,
 }
 
 impl PointSet {
     /// Point i of the n taken at this camera sample, in (0, 1)².
     pub fn point(self, i: u32, n: u32) -> DVec2 {
-        let index = owen(self.sample.wrapping_mul(n).wrapping_add(i), self.order);
-        let (x, y) = sobol(index);
-        DVec2::new(unit(owen(x, self.scramble as u32)), unit(owen(y, (self.scramble >> 32) as u32)))
+        let index = self.sample.wrapping_mul(n).wrapping_add(i);
+        match self.kind {
+            SamplerKind::Sobol => {
+                let (x, y) = sobol(owen(index, self.order));
+                DVec2::new(unit(owen(x, self.scramble as u32)), unit(owen(y, (self.scramble >> 32) as u32)))
+            }
+            SamplerKind::Stratified => self.in_cell(index, self.samples.saturating_mul(n)),
+            SamplerKind::Independent => self.anywhere(index),
+        }
     }
+
+    fn anywhere(self, index: u32) -> DVec2 {
+        let bits = mix(self.scramble.wrapping_add(u64::from(index).wrapping_mul(GOLDEN)));
+        DVec2::new(unit(bits as u32), unit((bits >> 32) as u32))
+    }
+
+    /// A point of one of n cells, each taken once in an order of chance: as many columns as divide n and are at most its root.
+    fn in_cell(self, index: u32, n: u32) -> DVec2 {
+        let root = (1..=n).take_while(|d| u64::from(*d) * u64::from(*d) <= u64::from(n));
+        let columns = root.filter(|d| n % d == 0).last().unwrap_or(1);
+        let cell = shuffled(index % n, n, self.order);
+        let corner = DVec2::new(f64::from(cell % columns), f64::from(cell / columns));
+        (corner + self.anywhere(index)) / DVec2::new(f64::from(columns), f64::from(n / columns))
+    }
+}
+
+/// A permutation of 0 … n − 1: one of the next power of two, gone on with until it is inside.
+fn shuffled(i: u32, n: u32, seed: u32) -> u32 {
+    let bits = 32 - (n - 1).leading_zeros();
+    if bits == 0 {
+        return 0;
+    }
+    let mask = u32::MAX >> (32 - bits);
+    let step = |x: u32| {
+        // Odd factors, sums and shifts to the right are each undone by others, so that no two places fall on one.
+        let x = x.wrapping_add(seed).wrapping_mul((seed >> 8) | 1) & mask;
+        let x = x ^ (x >> (bits / 2 + 1));
+        let x = x.wrapping_mul(0x9e37_79b1).wrapping_add(seed >> 16) & mask;
+        x ^ (x >> (bits / 2 + 1))
+    };
+    let mut x = step(i);
+    while x >= n {
+        x = step(x);
+    }
+    x
 }
 
 /// 2⁶⁴ over the golden ratio, odd: Weyl steps that spread well.
@@ -247,22 +303,48 @@ mod tests {
         }
     }
 
+    #[test]
+    fn a_shuffle_takes_every_place_once() {
+        for n in [1, 2, 3, 7, 16, 60, 100, 1000] {
+            for seed in [0, 1, 0xdead_beef, u32::MAX] {
+                let mut places: Vec<u32> = (0..n).map(|i| shuffled(i, n, seed)).collect();
+                places.sort_unstable();
+                assert!(places.into_iter().eq(0..n), "{n}, {seed}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_grid_has_one_point_in_each_cell() {
+        let point = |s| Sampler::new(3, 1, 2, s).of_kind(SamplerKind::Stratified, 12).next_2d();
+        let mut cells: Vec<(u32, u32)> =
+            (0..12).map(point).map(|p| ((p.x * 3.0) as u32, (p.y * 4.0) as u32)).collect();
+        cells.sort_unstable();
+        cells.dedup();
+        assert_eq!(cells.len(), 12);
+    }
+
     /// Root-mean-square error of n samples over 64 repetitions (pixels).
-    fn error(n: u32, f: impl Fn(DVec2) -> f64, exact: f64) -> f64 {
+    fn error(kind: SamplerKind, n: u32, f: impl Fn(DVec2) -> f64, exact: f64) -> f64 {
         let reps = 64;
         let square = |r: u32| {
-            let sum: f64 = (0..n).map(|s| f(Sampler::new(11, r, 0, s).next_2d())).sum();
+            let sum: f64 = (0..n).map(|s| f(Sampler::new(11, r, 0, s).of_kind(kind, n).next_2d())).sum();
             (sum / f64::from(n) - exact) * (sum / f64::from(n) - exact)
         };
         ((0..reps).map(square).sum::<f64>() / f64::from(reps)).sqrt()
     }
 
     #[test]
-    fn smooth_integrals_converge_faster_than_random() {
+    fn smooth_integrals_converge_as_fast_as_the_numbers_are_even() {
         let f = |p: DVec2| p.x * p.x * p.y + (p.x - p.y) * (p.x - p.y);
         let exact = 1.0 / 6.0 + 1.0 / 6.0;
-        let slope = crate::math::elementary::log2(error(4096, f, exact) / error(16, f, exact)) / 8.0;
-        assert!(slope < -1.3, "slope {slope}");
+        let slope = |kind| {
+            let [few, many] = [16, 4096].map(|n| error(kind, n, f, exact));
+            crate::math::elementary::log2(many / few) / 8.0
+        };
+        assert!(slope(SamplerKind::Sobol) < -1.3, "{}", slope(SamplerKind::Sobol));
+        assert!(slope(SamplerKind::Stratified) < -0.9, "{}", slope(SamplerKind::Stratified));
+        assert!((slope(SamplerKind::Independent) + 0.5).abs() < 0.05, "{}", slope(SamplerKind::Independent));
     }
 
     #[test]

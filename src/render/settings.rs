@@ -1,7 +1,7 @@
 //! What a picture is rendered with: the command line's words before the scene's, the scene's before the defaults.
 //! Every default of the `render` block stands here and nowhere else.
 
-use crate::scene::{Accelerator, RenderSettings, Rgb, ToneMap, TracerKind};
+use crate::scene::{Accelerator, RenderSettings, Rgb, SamplerKind, ToneMap, TracerKind};
 
 /// Settings with nothing left open.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -18,6 +18,8 @@ pub struct ResolvedSettings {
     pub depth: u32,
     /// Of every random number.
     pub seed: u64,
+    /// How even they are.
+    pub sampler: SamplerKind,
     /// The tree.
     pub accelerator: Accelerator,
     /// In stops; of 8-bit pictures.
@@ -82,6 +84,7 @@ impl ResolvedSettings {
             samples: overrides.samples.or(scene.samples).unwrap_or(default_samples(tracer)).max(1),
             depth: overrides.depth.or(scene.depth).unwrap_or(default_depth(tracer)).max(1),
             seed: overrides.seed.or(scene.seed).unwrap_or(0),
+            sampler: overrides.sampler.or(scene.sampler).unwrap_or_default(),
             accelerator: overrides.accelerator.or(scene.accelerator).unwrap_or_default(),
             exposure: overrides.exposure.or(scene.exposure).unwrap_or(0.0),
             tonemap: overrides.tonemap.or(scene.tonemap).unwrap_or_default(),

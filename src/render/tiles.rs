@@ -133,7 +133,8 @@ fn render_pixel(
         if cancel.load(Ordering::Relaxed) {
             return None;
         }
-        let mut sampler = Sampler::new(picture.settings.seed, pixel[0], pixel[1], sample);
+        let ResolvedSettings { seed, sampler: kind, samples, .. } = *picture.settings;
+        let mut sampler = Sampler::new(seed, pixel[0], pixel[1], sample).of_kind(kind, samples);
         if let Some(ray) = camera_ray(picture, pixel, &mut sampler) {
             let before = sum.non_finite;
             sum.add(picture.tracer.radiance(picture.world, ray, &mut sampler));

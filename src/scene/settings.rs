@@ -17,6 +17,8 @@ pub struct RenderSettings {
     pub depth: Option<u32>,
     /// Of every random number.
     pub seed: Option<u64>,
+    /// How even they are.
+    pub sampler: Option<SamplerKind>,
     /// The tree.
     pub accelerator: Option<Accelerator>,
     /// In stops.
@@ -48,6 +50,18 @@ pub enum TracerKind {
     Path,
     Irradiance,
     Photon,
+}
+
+/// The kinds of random numbers by name.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum SamplerKind {
+    /// Owen-scrambled Sobol points.
+    #[default]
+    Sobol,
+    /// One point in each cell of a grid over all samples of the pixel.
+    Stratified,
+    /// Each by itself.
+    Independent,
 }
 
 /// The accelerators by name.

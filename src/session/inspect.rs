@@ -10,7 +10,8 @@ use crate::math::{Affine, Point};
 use crate::scene::{
     Accelerator, Along, Camera, Fresnel, Layers, Light, LightSource, Lobe, Material, MeshSource, Node,
     Object, PatchMethod, PatchNet, PatchSource, PatternKind, Projection, Radius, RenderSettings, Rgb,
-    SampleInput, Scene, Shape, Skin, SkinSurface, Sky, Surface, Texture, ToneMap, TracerKind, Weights,
+    SampleInput, SamplerKind, Scene, Shape, Skin, SkinSurface, Sky, Surface, Texture, ToneMap, TracerKind,
+    Weights,
 };
 use glam::DVec3;
 use serde_json::{Map, Value as Json, json};
@@ -136,6 +137,7 @@ fn render(settings: &RenderSettings) -> Entry {
         samples,
         depth,
         seed,
+        sampler,
         accelerator,
         exposure,
         tonemap,
@@ -150,6 +152,7 @@ fn render(settings: &RenderSettings) -> Entry {
         ("samples", samples.map(|n| json!(n))),
         ("depth", depth.map(|n| json!(n))),
         ("seed", seed.map(|n| json!(n))),
+        ("sampler", sampler.map(|s| json!(sampler_word(s)))),
         ("accelerator", accelerator.map(|a| json!(accelerator_word(a)))),
         ("exposure", exposure.map(|x| json!(x))),
         ("tonemap", tonemap.map(|t| json!(tonemap_word(t)))),
@@ -494,6 +497,15 @@ pub fn tracer_word(kind: TracerKind) -> &'static str {
         TracerKind::Path => "path",
         TracerKind::Irradiance => "irradiance",
         TracerKind::Photon => "photon",
+    }
+}
+
+/// The sampler's word in the language.
+pub fn sampler_word(kind: SamplerKind) -> &'static str {
+    match kind {
+        SamplerKind::Sobol => "sobol",
+        SamplerKind::Stratified => "stratified",
+        SamplerKind::Independent => "independent",
     }
 }
 

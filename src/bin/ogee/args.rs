@@ -2,7 +2,7 @@
 
 use clap::{Args, Parser, Subcommand, ValueEnum, ValueHint};
 use clap_complete::Shell;
-use ogee::scene::{Accelerator, TracerKind};
+use ogee::scene::{Accelerator, SamplerKind, TracerKind};
 use std::ops::Range;
 use std::path::PathBuf;
 use std::str::FromStr;
@@ -150,6 +150,9 @@ pub struct Render {
     /// Seed of every random number
     #[arg(long, value_name = "N")]
     pub seed: Option<u64>,
+    /// How even the random numbers of a pixel are
+    #[arg(long, value_name = "SAMPLER", value_enum)]
+    pub sampler: Option<Sampler>,
     /// The tree that finds what a ray meets
     #[arg(long, value_name = "TREE", value_enum)]
     pub accelerator: Option<Tree>,
@@ -375,6 +378,26 @@ impl From<Tracer> for TracerKind {
             Tracer::Path => TracerKind::Path,
             Tracer::Irradiance => TracerKind::Irradiance,
             Tracer::Photon => TracerKind::Photon,
+        }
+    }
+}
+
+/// The samplers by the language's words.
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+#[value(rename_all = "lower")]
+#[allow(missing_docs, reason = "the names are the words of the language")]
+pub enum Sampler {
+    Sobol,
+    Stratified,
+    Independent,
+}
+
+impl From<Sampler> for SamplerKind {
+    fn from(sampler: Sampler) -> Self {
+        match sampler {
+            Sampler::Sobol => SamplerKind::Sobol,
+            Sampler::Stratified => SamplerKind::Stratified,
+            Sampler::Independent => SamplerKind::Independent,
         }
     }
 }

@@ -4,7 +4,7 @@ use crate::diag::{Code, Diagnostic};
 use crate::lang::coerce;
 use crate::lang::table::{Block, Context, Kind, Outcome, Property, Role, Type};
 use crate::lang::value::Value;
-use crate::scene::{Accelerator, Camera, Projection, RenderSettings, ToneMap, TracerKind};
+use crate::scene::{Accelerator, Camera, Projection, RenderSettings, SamplerKind, ToneMap, TracerKind};
 use glam::DVec3;
 use std::sync::Arc;
 
@@ -167,6 +167,12 @@ pub static RENDER: Kind = Kind {
         ),
         Property::new("seed", &[&[Type::Integer { min: 0 }]], "0", "of every random number of the picture"),
         Property::new(
+            "sampler",
+            &[&[Type::Word(&["sobol", "stratified", "independent"])]],
+            "sobol",
+            "how even the random numbers of a pixel are: scrambled Sobol points, one in each cell of a grid, or each by itself",
+        ),
+        Property::new(
             "accelerator",
             &[&[Type::Word(&["bvh", "kdtree", "none"])]],
             "bvh",
@@ -209,6 +215,7 @@ fn render(ctx: &mut dyn Context, block: Block) -> Outcome {
         samples: count("samples"),
         depth: count("depth"),
         seed: block.integer("seed"),
+        sampler: block.word("sampler").map(sampler),
         accelerator: accelerator(ctx, &block),
         exposure: block.number("exposure"),
         tonemap: block.word("tonemap").map(tonemap),
@@ -242,6 +249,14 @@ fn tracer(ctx: &mut dyn Context, block: &Block) -> Option<TracerKind> {
         not_built(ctx, block, "tracer", "path");
     }
     Some(kind)
+}
+
+fn sampler(word: &str) -> SamplerKind {
+    match word {
+        "stratified" => SamplerKind::Stratified,
+        "independent" => SamplerKind::Independent,
+        _ => SamplerKind::Sobol,
+    }
 }
 
 fn accelerator(ctx: &mut dyn Context, block: &Block) -> Option<Accelerator> {

@@ -17,7 +17,9 @@ fn metadata() -> Metadata {
         scene: "abc".into(),
         tracer: "whitted".into(),
         samples: 4,
+        depth: 8,
         seed: 9,
+        sampler: "sobol".into(),
         size: [7, 5],
     }
 }

@@ -123,6 +123,7 @@ fn job(args: &Render) -> Job {
         samples: args.samples,
         depth: args.depth,
         seed: args.seed,
+        sampler: args.sampler.map(Into::into),
         accelerator: args.accelerator.map(Into::into),
         exposure: args.exposure,
         ..RenderSettings::default()

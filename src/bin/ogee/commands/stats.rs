@@ -3,7 +3,7 @@
 use super::render::Stopwatch;
 use ogee::render::film::Film;
 use ogee::render::settings::ResolvedSettings;
-use ogee::session::inspect::{accelerator_word, tracer_word};
+use ogee::session::inspect::{accelerator_word, sampler_word, tracer_word};
 use ogee::session::picture::Prepared;
 use std::path::Path;
 
@@ -101,6 +101,7 @@ pub fn json(
         "samples": settings.samples,
         "depth": settings.depth,
         "seed": settings.seed,
+        "sampler": sampler_word(settings.sampler),
         "finished": film.share_finished(),
         "seconds": {
             "evaluate": seconds.evaluate.0,

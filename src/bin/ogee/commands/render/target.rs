@@ -9,7 +9,7 @@ use ogee::render::film::Film;
 use ogee::render::output::movie::{Movie, MovieFormat};
 use ogee::render::output::{self, Development, Format, Metadata};
 use ogee::render::settings::ResolvedSettings;
-use ogee::session::inspect::tracer_word;
+use ogee::session::inspect::{sampler_word, tracer_word};
 use std::io::IsTerminal;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
@@ -180,7 +180,9 @@ fn metadata(settings: &ResolvedSettings, sources: &SourceMap) -> Metadata {
         scene: format!("{:016x}", hash(sources)),
         tracer: tracer_word(settings.tracer).to_owned(),
         samples: settings.samples,
+        depth: settings.depth,
         seed: settings.seed,
+        sampler: sampler_word(settings.sampler).to_owned(),
         size: settings.size,
     }
 }
