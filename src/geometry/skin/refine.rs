@@ -1,6 +1,6 @@
-//! Triangles made finer where the motion bends them: an edge is halved until the middle of its image is the image of its middle, within a
-//! tolerance, and with it the longest edge of each triangle that it is one of, so that triangles stay well shaped (slivers would be true in
-//! place and wrong in direction). Source: Rivara 1984, "Algorithms for refining triangular grids".
+//! Triangles made finer where the motion bends them: an edge is halved until its image is straight within a tolerance, at its middle and at its
+//! quarters, and with it the longest edge of each triangle that it is one of, so that triangles stay well shaped (slivers would be true in place
+//! and wrong in direction). Source: Rivara 1984, "Algorithms for refining triangular grids".
 //!
 //! Edges are told apart by where their ends are and not by their numbers, so that no crack opens where two triangles have vertices of their own
 //! in one place.
@@ -15,6 +15,10 @@ const MOST_HALVINGS: usize = 8;
 
 /// A mesh of more triangles than this is halved no further: finer than a picture shows, and as much as memory should hold.
 const MOST_TRIANGLES: usize = 1 << 22;
+
+/// Where on an edge its image is compared: the middle alone is in its place on an edge across a twist too, whose image is an S, and leaves
+/// triangles there that stand across the surface.
+const PLACES: [f64; 3] = [0.25, 0.5, 0.75];
 
 /// Where a motion takes points.
 pub type Images<'f, E> = dyn Fn(&[DVec3]) -> Result<Vec<DVec3>, E> + 'f;
@@ -102,10 +106,15 @@ fn bent<E>(
     edges.dedup();
     // An edge of two finer triangles may be halved from the other side already.
     edges.retain(|edge| !places.middles.contains_key(edge));
-    let middles: Vec<DVec3> = edges.iter().map(|edge| middle(&places.points, *edge)).collect();
-    let images = images(&middles)?;
-    let straight = |(edge, image): &(Edge, DVec3)| agree(*image, middle(moved, *edge), tolerance);
-    Ok(edges.into_iter().zip(images).filter(|one| !straight(one)).map(|(edge, _)| edge).collect())
+    let within = |of: &[DVec3], [a, b]: Edge, t: f64| of[a as usize].lerp(of[b as usize], t);
+    let points = edges.iter().flat_map(|edge| PLACES.map(|t| within(&places.points, *edge, t)));
+    let images = images(&points.collect::<Vec<DVec3>>())?;
+    let straight = |edge: Edge, images: &[DVec3]| {
+        let mut both = PLACES.iter().zip(images);
+        both.all(|(t, image)| agree(*image, within(moved, edge, *t), tolerance))
+    };
+    let looked_at = edges.into_iter().zip(images.chunks(PLACES.len()));
+    Ok(looked_at.filter(|(edge, images)| !straight(*edge, images)).map(|(edge, _)| edge).collect())
 }
 
 /// True for points within a tolerance of one another, or as near as their rounding lets one say; and where there is no

@@ -200,6 +200,20 @@ fn bent_triangles_are_made_finer_without_cracks() {
 }
 
 #[test]
+fn an_edge_whose_image_is_an_s_is_cut_though_its_middle_is_in_place() {
+    let wave = |points: &[DVec3]| {
+        Ok::<_, ()>(
+            points.iter().map(|p| *p + DVec3::Z * 0.1 * sin(2.0 * std::f64::consts::PI * p.x)).collect(),
+        )
+    };
+    let positions = vec![DVec3::ZERO, DVec3::X, DVec3::Y];
+    let mut mesh = Mesh { positions, triangles: vec![[0, 1, 2]], ..Mesh::default() };
+    refine(&mut mesh, 0.01, &wave).unwrap();
+    let is_cut = |a: DVec3| mesh.positions.contains(&a);
+    assert!(is_cut(DVec3::X * 0.5) && is_cut(DVec3::X * 0.25), "{} triangles", mesh.triangles.len());
+}
+
+#[test]
 fn a_motion_that_tears_is_followed_only_so_far() {
     let tear = |points: &[DVec3]| {
         Ok::<_, ()>(points.iter().map(|p| *p + DVec3::Z * f64::from(u8::from(p.x > 0.7))).collect())
