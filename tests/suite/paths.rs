@@ -38,11 +38,6 @@ fn agrees((mean, error): (f64, f64), exact: f64) {
     assert!(off <= 3.0 * error + 1e-12 && off <= 0.003 * exact, "{mean} ± {error}, truly {exact}");
 }
 
-/// A material that glows and reflects.
-fn glowing_and(radiance: f64, albedo: f64) -> Arc<Material> {
-    layered(albedo, |l| l.emit = Texture::number(radiance))
-}
-
 #[test]
 fn a_closed_room_that_glows_is_as_bright_as_its_series_and_not_as_the_first_terms() {
     for (albedo, samples) in [(0.5, 256), (0.8, 2048), (0.9, 8192)] {
@@ -134,17 +129,6 @@ fn spheres_in_one_another_light_each_other() {
     ]);
     agrees(by_paths(&world, 0.8 * X, DVec3::ZERO, 4096), 4.0 / 3.0);
     agrees(by_paths(&world, 0.8 * X, X, 16384), 2.0 / 3.0);
-}
-
-/// A unit cube of six squares that reflect alike, its ceiling glowing.
-fn white_box(albedo: f64) -> World {
-    let h = 0.5;
-    let centre = DVec3::splat(h);
-    let inward = |n: DVec3, a: DVec3| rect(centre - n * h, a * h, n.cross(a) * h);
-    let walls =
-        [(X, Y), (-X, Y), (Z, Y), (-Z, Y), (Y, X)].map(|(n, a)| object(inward(n, a), &diffuse(albedo)));
-    let ceiling = object(inward(-Y, X), &glowing_and(1.0, albedo));
-    world(walls.into_iter().chain([ceiling]).collect())
 }
 
 #[test]

@@ -8,7 +8,6 @@ use ogee::render::tracer;
 use ogee::scene::*;
 use ogee::world::{Ray, RayKind, World};
 use std::f64::consts::PI;
-use std::sync::Arc;
 
 const X: DVec3 = DVec3::X;
 const Y: DVec3 = DVec3::Y;
@@ -38,10 +37,6 @@ fn by(settings: impl Fn(u64) -> ResolvedSettings, world: &World, eye: DVec3, tar
 fn agrees(world: &World, eye: DVec3, target: DVec3, exact: f64) {
     let found = by(|seed| photons(24, seed), world, eye, &[target]);
     assert!((found - exact).abs() < 0.01 * exact, "{found}, truly {exact}");
-}
-
-fn glowing_and(radiance: f64, albedo: f64) -> Arc<Material> {
-    layered(albedo, |l| l.emit = Texture::number(radiance))
 }
 
 #[test]
@@ -74,15 +69,10 @@ fn spheres_in_one_another_light_each_other() {
 
 #[test]
 fn a_white_box_has_the_radiosity_of_its_form_factors() {
-    let h = 0.5;
-    let inward = |n: DVec3, a: DVec3| rect(DVec3::splat(h) - n * h, a * h, n.cross(a) * h);
     for (albedo, floor, wall) in [(0.5, 0.19760, 0.17765), (0.8, 0.71306, 0.68366)] {
-        let walls =
-            [(X, Y), (-X, Y), (Z, Y), (-Z, Y), (Y, X)].map(|(n, a)| object(inward(n, a), &diffuse(albedo)));
-        let ceiling = object(inward(-Y, X), &glowing_and(1.0, albedo));
-        let room = world(walls.into_iter().chain([ceiling]).collect());
-        agrees(&room, DVec3::splat(h), DVec3::new(0.5, 0.0, 0.5), floor);
-        agrees(&room, DVec3::splat(h), DVec3::new(0.0, 0.5, 0.5), wall);
+        let (room, centre) = (white_box(albedo), DVec3::splat(0.5));
+        agrees(&room, centre, DVec3::new(0.5, 0.0, 0.5), floor);
+        agrees(&room, centre, DVec3::new(0.0, 0.5, 0.5), wall);
     }
 }
 

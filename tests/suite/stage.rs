@@ -36,6 +36,11 @@ pub fn glowing(radiance: f64) -> Arc<Material> {
     layered(0.0, |l| l.emit = Texture::number(radiance))
 }
 
+/// A material that shines and has a grey base.
+pub fn glowing_and(radiance: f64, albedo: f64) -> Arc<Material> {
+    layered(albedo, |l| l.emit = Texture::number(radiance))
+}
+
 /// Clear glass.
 pub fn glass(ior: f64) -> Arc<Material> {
     layered(0.0, |l| {
@@ -121,6 +126,16 @@ pub fn world(nodes: Vec<Node>) -> World {
     let (world, diagnostics) = World::new(nodes, &WorldOptions::default(), &DiskLoader);
     assert!(diagnostics.is_empty(), "{diagnostics:?}");
     world
+}
+
+/// A unit cube of six squares that reflect alike, its ceiling glowing.
+pub fn white_box(albedo: f64) -> World {
+    let (x, y, z, h) = (DVec3::X, DVec3::Y, DVec3::Z, 0.5);
+    let inward = |n: DVec3, a: DVec3| rect(DVec3::splat(h) - n * h, a * h, n.cross(a) * h);
+    let walls =
+        [(x, y), (-x, y), (z, y), (-z, y), (y, x)].map(|(n, a)| object(inward(n, a), &diffuse(albedo)));
+    let ceiling = object(inward(-y, x), &glowing_and(1.0, albedo));
+    world(walls.into_iter().chain([ceiling]).collect())
 }
 
 /// Settings of a small picture, one sample a pixel, to be changed.
