@@ -384,7 +384,7 @@ impl<'c> Compiler<'c> {
 
     fn comprehension(&mut self, c: &'c Comprehension) -> Compiled {
         let list = self.expr(&c.list)?;
-        let Some(elements) = list.elements() else {
+        let Some(elements) = self.turns(&list, c.list.span)? else {
             return Err(self.mismatch(
                 format!("a loop runs over a range or a list, and this is {}", list.shown()),
                 c.list.span,
@@ -437,7 +437,7 @@ impl<'c> Compiler<'c> {
     }
 
     fn index(&mut self, list: &Symbol, index: &Symbol, at: &Expr) -> Compiled {
-        let elements = match (list.elements(), self.components(list)) {
+        let elements = match (self.elements(list, at.span)?, self.components(list)) {
             (Some(elements), _) => elements,
             (None, Some(registers)) if registers.len() > 1 => {
                 registers.into_iter().map(Symbol::Number).collect()

@@ -245,7 +245,7 @@ impl<'c> Compiler<'c> {
         {
             return self.counted(turns, range.start, range.step, range.len, span);
         }
-        let Some(elements) = list.elements() else {
+        let Some(elements) = self.turns(&list, turns.list.span)? else {
             let message = format!("a loop runs over a range or a list, and this is {}", list.shown());
             return Err(self.mismatch(message, turns.list.span));
         };

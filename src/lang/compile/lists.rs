@@ -15,10 +15,16 @@ impl Compiler<'_> {
         values: &[Symbol],
         span: Span,
     ) -> Compiled<Option<Symbol>> {
-        let Some(elements) = values.iter().find_map(Symbol::elements) else { return Ok(None) };
+        let Some((list, len)) = values.iter().find_map(|v| Some((v, v.len()?))) else { return Ok(None) };
+        if name == "len" && values.len() == 1 {
+            return Ok(Some(Symbol::Known(Value::Number(len as f64))));
+        }
+        if !matches!(name, "sum" | "map" | "fold") {
+            return Ok(None);
+        }
+        let elements = self.turns(list, span)?.unwrap_or_default();
         let function = || values.iter().find(|v| is_function(v)).cloned();
         match (name, values) {
-            ("len", [_]) => Ok(Some(Symbol::Known(Value::Number(elements.len() as f64)))),
             ("sum", [_]) => {
                 let mut sum = Symbol::Known(Value::Number(0.0));
                 for (i, element) in elements.iter().enumerate() {

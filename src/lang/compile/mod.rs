@@ -60,6 +60,7 @@ pub fn compile(
         frames: Vec::new(),
         n_frames: 0,
         n_branches: 0,
+        n_turns: 0,
     };
     match compiler.whole(request) {
         Ok((registers, span)) => {
@@ -143,10 +144,15 @@ struct Compiler<'c> {
     frames: Vec<Frame>,
     n_frames: usize,
     n_branches: usize,
+    /// Elements of lists and ranges that were gone through so far.
+    n_turns: usize,
 }
 
 /// Calls that may stand inside one another: a recursion that ends when the function is made is written out, up to here.
 const DEEPEST: usize = 64;
+
+/// Elements of lists and ranges that may be gone through while a tape is made.
+const MOST_TURNS: usize = 1 << 20;
 
 /// Steps of one tape.
 const LONGEST: usize = 1 << 16;

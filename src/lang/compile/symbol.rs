@@ -1,6 +1,7 @@
 //! What stands for a value while a function is compiled.
 
-use super::Compiler;
+use super::{Compiled, Compiler, MOST_TURNS, Stop};
+use crate::diag::{Code, Span};
 use crate::lang::coerce::shown;
 use crate::lang::resolve::program::FunctionId;
 use crate::lang::value::Value;
@@ -62,8 +63,18 @@ impl Symbol {
         }
     }
 
-    /// The elements of a list or range, known or not.
-    pub fn elements(&self) -> Option<Vec<Symbol>> {
+    /// How many elements a list or range has.
+    pub fn len(&self) -> Option<usize> {
+        match self {
+            Symbol::List(list) => Some(list.len()),
+            Symbol::Known(Value::List(list)) => Some(list.len()),
+            Symbol::Known(Value::Range(range)) => Some(range.len),
+            _ => None,
+        }
+    }
+
+    /// The elements of a list or range, known or not. Asked where there are few: see [`Compiler::turns`].
+    fn elements(&self) -> Option<Vec<Symbol>> {
         match self {
             Symbol::List(list) => Some((**list).clone()),
             Symbol::Known(Value::List(list)) => Some(list.iter().cloned().map(Symbol::Known).collect()),
@@ -99,8 +110,32 @@ impl Compiler<'_> {
         }
     }
 
+    /// The elements of a list or range, to be gone through one by one; none of what is neither. All that are while a tape is made are
+    /// counted, so that loops in loops end.
+    pub(super) fn turns(&mut self, symbol: &Symbol, at: Span) -> Compiled<Option<Vec<Symbol>>> {
+        self.n_turns = self.n_turns.saturating_add(symbol.len().unwrap_or(0));
+        if self.n_turns > MOST_TURNS { Err(self.too_many(at)) } else { self.elements(symbol, at) }
+    }
+
+    /// The elements of a list or range; none of what is neither.
+    pub(super) fn elements(&self, symbol: &Symbol, at: Span) -> Compiled<Option<Vec<Symbol>>> {
+        match symbol {
+            Symbol::Known(Value::Range(range)) if range.len > MOST_TURNS => Err(self.too_many(at)),
+            _ => Ok(symbol.elements()),
+        }
+    }
+
+    fn too_many(&self, at: Span) -> Stop {
+        let message = format!("making this function takes more than {MOST_TURNS} elements one by one");
+        let said = self.refuse(Code::ListLimit, at, message);
+        said.hint("a `for` over the range runs while rendering instead, and needs no list").into()
+    }
+
     /// The registers of a list of numbers, one for each.
     pub(super) fn numbers(&mut self, symbol: &Symbol) -> Option<Vec<Register>> {
+        if symbol.len()? > MOST_TURNS {
+            return None;
+        }
         let elements = symbol.elements()?;
         let each = elements.iter().map(|element| match self.components(element)?[..] {
             [register] => Some(register),
