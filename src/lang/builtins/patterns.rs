@@ -19,10 +19,7 @@ pub static ALL: &[Builtin] = &[
     Builtin::new(
         "checker",
         TWO,
-        General(|ctx, arguments| {
-            let [a, b] = two(ctx, arguments)?;
-            made(ctx, PatternKind::Checker(a, b), arguments.span)
-        }),
+        General(|ctx, arguments| of_two(ctx, arguments, PatternKind::Checker)),
         "Unit cubes in alternation, one of them `a` and centred on the origin.",
         ("checker(white, 0.3)", "a pattern"),
     ),
@@ -40,10 +37,7 @@ pub static ALL: &[Builtin] = &[
     Builtin::new(
         "gradient",
         TWO,
-        General(|ctx, arguments| {
-            let [a, b] = two(ctx, arguments)?;
-            made(ctx, PatternKind::Gradient(a, b), arguments.span)
-        }),
+        General(|ctx, arguments| of_two(ctx, arguments, PatternKind::Gradient)),
         "From `a` at y = 0 to `b` at y = 1; beyond, the nearer of them.",
         ("gradient(navy, white)", "a pattern"),
     ),
@@ -88,20 +82,14 @@ pub static ALL: &[Builtin] = &[
     Builtin::new(
         "marble",
         TWO_OR,
-        General(|ctx, arguments| {
-            let [a, b] = two(ctx, arguments)?;
-            made(ctx, PatternKind::Marble(a, b), arguments.span)
-        }),
+        General(|ctx, arguments| of_two(ctx, arguments, PatternKind::Marble)),
         "Veins: from `a` to `b` and back once a unit along x, displaced by four octaves of noise.",
         ("marble(white, gray)", "a pattern"),
     ),
     Builtin::new(
         "wood",
         TWO_OR,
-        General(|ctx, arguments| {
-            let [a, b] = two(ctx, arguments)?;
-            made(ctx, PatternKind::Wood(a, b), arguments.span)
-        }),
+        General(|ctx, arguments| of_two(ctx, arguments, PatternKind::Wood)),
         "Rings about the y axis, one unit thick, each from `a` within to `b` without, a tenth of a unit out of round.",
         ("wood(maroon, olive)", "a pattern"),
     ),
@@ -163,10 +151,16 @@ fn textures(ctx: &mut dyn Context, arguments: &Arguments<'_>, from: usize) -> Ou
     outcome.map(|()| found)
 }
 
-fn two(ctx: &mut dyn Context, arguments: &Arguments<'_>) -> Outcome<[Texture; 2]> {
+/// A pattern made of two textures.
+fn of_two(
+    ctx: &mut dyn Context,
+    arguments: &Arguments<'_>,
+    kind: fn(Texture, Texture) -> PatternKind,
+) -> Outcome {
     let mut both = textures(ctx, arguments, 0)?.into_iter();
-    let next = |both: &mut std::vec::IntoIter<Texture>| both.next().unwrap_or(Texture::ZERO);
-    Ok([next(&mut both), next(&mut both)])
+    let mut next = || both.next().unwrap_or(Texture::ZERO);
+    let (a, b) = (next(), next());
+    made(ctx, kind(a, b), arguments.span)
 }
 
 fn texture(ctx: &mut dyn Context, value: &Value, span: Span) -> Outcome<Texture> {
