@@ -25,12 +25,14 @@ impl Inside {
         self
     }
 
-    /// What absorbs light on the way to a surface, if anything does: the innermost medium, or, for a ray that meets the surface from within
-    /// without having entered it, as the camera stands inside, that of the surface.
-    pub(super) fn absorbing(&self, bsdf: &Bsdf) -> Option<Rgb> {
+    /// Share of light left after a length that ends at a surface. What absorbs is the innermost medium, or, for a ray that meets the surface
+    /// from within without having entered it, as the camera stands inside, that of the surface.
+    #[inline]
+    pub(super) fn left(&self, bsdf: &Bsdf, length: f64) -> Rgb {
         match self.n {
-            0 => (!bsdf.outside && bsdf.is_transmissive()).then_some(bsdf.absorb),
-            n => Some(self.absorb[n - 1]),
+            0 if bsdf.outside || !bsdf.is_transmissive() => Rgb::ONE,
+            0 => kept(bsdf.absorb, length),
+            n => kept(self.absorb[n - 1], length),
         }
     }
 

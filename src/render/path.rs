@@ -12,13 +12,13 @@
 //! `spot` and `sun` through smooth glass cannot be found so, and is missing.
 
 use super::Tracer;
-use super::medium::{Inside, kept};
+use super::medium::Inside;
 use super::photon::Maps;
 use super::sampler::Sampler;
 use super::settings::ResolvedSettings;
 use crate::scene::Rgb;
 use crate::world::bsdf::{Bounce, Bsdf, Odds};
-use crate::world::light::{Choice, LightEnd, Lights};
+use crate::world::light::{Ball, Choice, LightEnd, Lights};
 use crate::world::texture::Sampled;
 use crate::world::{Hit, Ray, RayKind, SurfacePoint, World};
 use glam::{DVec2, DVec3};
@@ -101,8 +101,7 @@ impl Path {
     /// Paths in a world, by these settings.
     pub fn new(world: &World, settings: &ResolvedSettings) -> Path {
         let lights = Lights::new(world);
-        let radius = world.bounds().size().length() / 2.0;
-        let choice = Choice::new(&lights.lights, if radius.is_finite() { radius } else { 0.0 });
+        let choice = Choice::new(&lights.lights, Ball::around(world).radius);
         let has_holes = world.materials().iter().any(|m| !m.layers().opacity.is(Rgb::ONE));
         let ResolvedSettings { depth, background, .. } = *settings;
         Path { lights, choice, depth, background, has_holes, branches: 1, photons: None }
@@ -159,9 +158,7 @@ impl Path {
             return Ok(false);
         };
         let bsdf = Bsdf::at(world, &hit, &walk.ray)?;
-        if let Some(absorb) = walk.inside.absorbing(&bsdf) {
-            walk.weight *= kept(absorb, hit.t);
-        }
+        walk.weight *= walk.inside.left(&bsdf, hit.t);
         if bsdf.opacity < 1.0 && walk.sampler.next_1d() >= bsdf.opacity {
             walk.ray = hit.spawn(walk.ray.direction, walk.ray.kind);
             return Ok(true);

@@ -137,8 +137,7 @@ impl PointSet {
 
     /// A point of one of n cells, each taken once in an order of chance: as many columns as divide n and are at most its root.
     fn in_cell(self, index: u32, n: u32) -> DVec2 {
-        let root = (1..=n).take_while(|d| u64::from(*d) * u64::from(*d) <= u64::from(n));
-        let columns = root.filter(|d| n.is_multiple_of(*d)).last().unwrap_or(1);
+        let columns = (1..=n.isqrt()).rev().find(|d| n.is_multiple_of(*d)).unwrap_or(1);
         let cell = shuffled(index % n, n, self.order);
         let corner = DVec2::new(f64::from(cell % columns), f64::from(cell / columns));
         (corner + self.anywhere(index)) / DVec2::new(f64::from(columns), f64::from(n / columns))

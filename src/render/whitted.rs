@@ -14,7 +14,7 @@
 mod local;
 
 use super::Tracer;
-use super::medium::{Inside, kept};
+use super::medium::Inside;
 use super::sampler::Sampler;
 use super::settings::ResolvedSettings;
 use crate::scene::{Layers, Material, Rgb};
@@ -141,10 +141,7 @@ impl Whitted {
         // Looked at where it stands: a copy of so much just written waits for the writes.
         let found = Bsdf::at(world, &hit, &task.ray);
         let bsdf = found.as_ref().map_err(|fault| *fault)?;
-        let mut weight = task.weight;
-        if let Some(absorb) = task.inside.absorbing(bsdf) {
-            weight *= kept(absorb, hit.t);
-        }
+        let mut weight = task.weight * task.inside.left(bsdf, hit.t);
         if bsdf.opacity < 1.0 {
             let past = Task {
                 ray: hit.spawn(task.ray.direction, task.ray.kind),

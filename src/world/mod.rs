@@ -8,6 +8,8 @@ mod aggregate;
 pub mod bsdf;
 pub mod bvh;
 mod emitter;
+#[cfg(test)]
+mod even;
 mod every;
 mod footprint;
 mod hit;

@@ -94,19 +94,22 @@ impl Map {
         let (point, normal) = (photon.position, photon.normal.as_dvec3());
         let query = Query { point, normal, radius: f64::INFINITY, most, segments: u32::MAX };
         HEAP.with_borrow_mut(|heap| {
-            heap.clear();
-            Search { query: &query, most: f64::INFINITY, heap }.visit(&self.photons, 0);
+            self.nearest(&query, heap);
             (heap.len() == most).then(|| heap[0].0.sqrt())
         })
+    }
+
+    /// Leaves the nearest in a heap, farthest first.
+    fn nearest(&self, query: &Query, heap: &mut Vec<(f64, u32)>) {
+        heap.clear();
+        Search { query, most: query.radius * query.radius, heap }.visit(&self.photons, 0);
     }
 
     /// The light near a point: `reflected` says what becomes of each photon's power, and the sum is divided by the disc. None where
     /// fewer than asked for lie within the radius and `sparse` is not wanted.
     pub fn gather(&self, query: &Query, sparse: bool, reflected: impl Fn(&Photon) -> Rgb) -> Option<Rgb> {
         HEAP.with_borrow_mut(|heap| {
-            heap.clear();
-            let mut search = Search { query, most: query.radius * query.radius, heap };
-            search.visit(&self.photons, 0);
+            self.nearest(query, heap);
             let full = heap.len() == query.most;
             if !full && !sparse {
                 return None;

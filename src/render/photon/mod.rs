@@ -52,13 +52,7 @@ const CORNER: f64 = 2.0;
 impl Maps {
     /// Shoots the photons of a world. Takes all threads there are, which leaves no trace in the maps.
     pub fn new(world: &World, lights: &Lights, choice: &Choice, settings: &ResolvedSettings) -> Maps {
-        let bounds = world.bounds();
-        let radius = bounds.size().length() / 2.0;
-        let usable = radius.is_finite() && radius > 0.0;
-        let ball = Ball {
-            center: if usable { (bounds.min + bounds.max) / 2.0 } else { glam::DVec3::ZERO },
-            radius: if usable { radius } else { 0.0 },
-        };
+        let ball = Ball::around(world);
         let ResolvedSettings { depth, seed, samples, .. } = *settings;
         let shooting = Shooting { world, lights, choice, ball, depth, seed, caustics: false };
         let map = |i: usize, shooting: Shooting<'_>| {
@@ -93,7 +87,7 @@ impl Maps {
     }
 
     fn query(&self, i: usize, hit: &Hit<'_>, bsdf: &Bsdf, segment: u32) -> Query {
-        let segments = if self.depth == u32::MAX { u32::MAX } else { self.depth.saturating_sub(segment) };
+        let segments = self.depth.saturating_sub(segment);
         Query { point: hit.point, normal: bsdf.geometric, radius: self.radii[i], most: MOST[i], segments }
     }
 }

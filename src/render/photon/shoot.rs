@@ -1,7 +1,7 @@
 //! Light followed from the lamps: where it arrives on surfaces that spread it, photons are left. Knows nothing of cameras.
 
 use super::map::Photon;
-use crate::render::medium::{Inside, kept};
+use crate::render::medium::Inside;
 use crate::render::path::survival;
 use crate::render::sampler::Sampler;
 use crate::scene::Rgb;
@@ -92,9 +92,7 @@ impl Shooting<'_> {
     fn follow(&self, light: &Light, flight: &mut Flight, photons: &mut Vec<Photon>) -> Sampled<bool> {
         let Some(hit) = self.world.closest(&flight.ray) else { return Ok(false) };
         let bsdf = Bsdf::at(self.world, &hit, &flight.ray)?;
-        if let Some(absorb) = flight.inside.absorbing(&bsdf) {
-            flight.power *= kept(absorb, hit.t);
-        }
+        flight.power *= flight.inside.left(&bsdf, hit.t);
         if bsdf.opacity < 1.0 && flight.sampler.next_1d() >= bsdf.opacity {
             flight.ray = hit.spawn(flight.ray.direction, flight.ray.kind);
             return Ok(true);

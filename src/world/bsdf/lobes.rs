@@ -141,16 +141,13 @@ impl Ggx {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::world::even::grid;
     use crate::world::light::cosine_hemisphere;
 
     /// ∫ f(wi) cos over the hemisphere about z, by a grid of cosine-weighted directions.
     fn albedo(f: impl Fn(DVec3) -> f64) -> f64 {
         let n = 1000;
-        let cell = |i| (f64::from(i) + 0.5) / f64::from(n);
-        let sum: f64 = (0..n)
-            .flat_map(|i| (0..n).map(move |j| (i, j)))
-            .map(|(i, j)| f(cosine_hemisphere(DVec2::new(cell(i), cell(j)))) * PI)
-            .sum();
+        let sum: f64 = grid(n).map(|u| f(cosine_hemisphere(u)) * PI).sum();
         sum / f64::from(n * n)
     }
 
@@ -202,10 +199,9 @@ mod tests {
         for c in [1.0, 0.6, 0.2] {
             let wo = tilted(c);
             let n = 300;
-            let cell = |i: u32| (f64::from(i) + 0.5) / f64::from(n);
             let mut sum = 0.0;
-            for (i, j) in (0..n).flat_map(|i| (0..n).map(move |j| (i, j))) {
-                let h = ggx.visible_normal(wo, DVec2::new(cell(i), cell(j)));
+            for u in grid(n) {
+                let h = ggx.visible_normal(wo, u);
                 let wi = super::super::fresnel::reflect(wo, h);
                 sum += ggx.carried(wo.z, wi.z);
             }

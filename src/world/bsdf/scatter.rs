@@ -157,7 +157,7 @@ impl Bsdf {
 mod tests {
     use super::*;
     use crate::scene::{Fresnel, Lobe};
-    use std::f64::consts::TAU;
+    use crate::world::even::{grid, over_all_directions};
 
     fn seen_at(cosine: f64) -> Bsdf {
         Bsdf { wo: DVec3::new((1.0 - cosine * cosine).sqrt(), 0.0, cosine), ..Bsdf::BARE }
@@ -184,22 +184,6 @@ mod tests {
             ("frosted", glass(true)),
             ("frosted from within", glass(false)),
         ]
-    }
-
-    fn grid(n: u32) -> impl Iterator<Item = DVec2> {
-        let cell = move |i| (f64::from(i) + 0.5) / f64::from(n);
-        (0..n).flat_map(move |i| (0..n).map(move |j| DVec2::new(cell(i), cell(j))))
-    }
-
-    /// ∫ over all directions by an even grid of them.
-    fn over_all_directions(n: u32, f: impl Fn(DVec3) -> f64) -> f64 {
-        let at = |u: DVec2| {
-            let z = 2.0 * u.x - 1.0;
-            let r = (1.0 - z * z).sqrt();
-            let (s, c) = crate::math::elementary::sin_cos(TAU * u.y);
-            DVec3::new(r * c, r * s, z)
-        };
-        grid(n).map(|u| f(at(u))).sum::<f64>() * 2.0 * TAU / f64::from(n * n)
     }
 
     /// The mean over all choices of what a bounce gives.

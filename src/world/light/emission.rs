@@ -4,7 +4,7 @@
 use super::{AreaLight, Light, Source, cosine_hemisphere, frame, to_frame};
 use crate::math::elementary::sin_cos;
 use crate::scene::Rgb;
-use crate::world::{Ray, RayKind, SurfacePoint};
+use crate::world::{Ray, RayKind, SurfacePoint, World};
 use glam::{DVec2, DVec3};
 use std::f64::consts::{PI, TAU};
 
@@ -24,6 +24,18 @@ pub struct Ball {
     pub center: DVec3,
     /// Radius.
     pub radius: f64,
+}
+
+impl Ball {
+    /// Around all that is bounded in a world. Without radius where there is nothing of the kind.
+    pub fn around(world: &World) -> Ball {
+        let bounds = world.bounds();
+        let radius = bounds.size().length() / 2.0;
+        match radius.is_finite() && radius > 0.0 {
+            true => Ball { center: (bounds.min + bounds.max) / 2.0, radius },
+            false => Ball { center: DVec3::ZERO, radius: 0.0 },
+        }
+    }
 }
 
 impl Light {

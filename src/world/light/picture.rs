@@ -27,7 +27,6 @@ pub struct PictureSky {
 /// The sphere cut into rows and columns, each cell with a weight: about its power.
 #[derive(Debug)]
 struct Cells {
-    columns: usize,
     /// Where columns begin and end, in turns from the left edge.
     turns: Vec<f64>,
     /// Cosines of the angles from up at which rows begin and end.
@@ -65,9 +64,9 @@ impl PictureSky {
 
     /// A unit direction by u in (0, 1)², and its density per solid angle.
     pub fn choose(&self, u: DVec2) -> (DVec3, f64) {
-        let Cells { columns, turns, cosines, row_sums, sums } = &self.cells;
+        let Cells { turns, cosines, row_sums, .. } = &self.cells;
         let (row, down) = pick(row_sums, u.x);
-        let (column, along) = pick(&sums[row * columns..(row + 1) * columns], u.y);
+        let (column, along) = pick(self.cells.row(row), u.y);
         let y = cosines[row] + (cosines[row + 1] - cosines[row]) * down;
         let turn = turns[column] + (turns[column + 1] - turns[column]) * along;
         let ((s, c), r) = (sin_cos(TAU * (turn - 0.5)), (1.0 - y * y).max(0.0).sqrt());
@@ -78,7 +77,7 @@ impl PictureSky {
     pub fn density(&self, direction: DVec3) -> f64 {
         let at = self.place(direction);
         let row = cell_of(at.y, self.image.height(), self.cells.rows());
-        let column = cell_of(at.x, self.image.width(), self.cells.columns);
+        let column = cell_of(at.x, self.image.width(), self.cells.columns());
         self.cells.density(row, column)
     }
 
@@ -156,11 +155,20 @@ impl Cells {
             total += running(row);
             row_sums.push(total);
         }
-        Cells { columns, turns, cosines, row_sums, sums: weights }
+        Cells { turns, cosines, row_sums, sums: weights }
     }
 
     fn rows(&self) -> usize {
         self.row_sums.len()
+    }
+
+    fn columns(&self) -> usize {
+        self.turns.len() - 1
+    }
+
+    /// The sums of a row.
+    fn row(&self, row: usize) -> &[f64] {
+        &self.sums[row * self.columns()..][..self.columns()]
     }
 
     fn total(&self) -> f64 {
@@ -168,7 +176,7 @@ impl Cells {
     }
 
     fn density(&self, row: usize, column: usize) -> f64 {
-        let sums = &self.sums[row * self.columns..][..self.columns];
+        let sums = self.row(row);
         let weight = sums[column] - if column == 0 { 0.0 } else { sums[column - 1] };
         let turn = self.turns[column + 1] - self.turns[column];
         let solid_angle = TAU * turn * (self.cosines[row] - self.cosines[row + 1]);
@@ -220,6 +228,7 @@ fn pick(sums: &[f64], u: f64) -> (usize, f64) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::world::even::{grid, over_all_directions};
 
     fn sky(width: u32, height: u32, colour: impl Fn(f64, f64) -> [f64; 3]) -> PictureSky {
         let image = Arc::new(Image::from_texels(width, height, colour));
@@ -233,21 +242,6 @@ mod tests {
             () if x < 0.25 => [0.0; 3],
             () => [0.2, 0.3 * y, 0.5 * x],
         })
-    }
-
-    fn grid(n: u32) -> impl Iterator<Item = DVec2> {
-        let cell = move |i| (f64::from(i) + 0.5) / f64::from(n);
-        (0..n).flat_map(move |i| (0..n).map(move |j| DVec2::new(cell(i), cell(j))))
-    }
-
-    /// ∫ over all directions, by an even grid of them.
-    fn over_all(n: u32, f: impl Fn(DVec3) -> f64) -> f64 {
-        let at = |u: DVec2| {
-            let z = 2.0 * u.x - 1.0;
-            let ((s, c), r) = (sin_cos(TAU * u.y), (1.0 - z * z).sqrt());
-            DVec3::new(r * c, z, r * s)
-        };
-        grid(n).map(|u| f(at(u))).sum::<f64>() * 4.0 * PI / f64::from(n * n)
     }
 
     #[test]
@@ -272,10 +266,10 @@ mod tests {
     #[test]
     fn the_chance_of_a_direction_is_the_density_said() {
         let sky = sunny();
-        let whole = over_all(2000, |d| sky.density(d));
+        let whole = over_all_directions(2000, |d| sky.density(d));
         assert!((whole - 1.0).abs() < 1e-2, "{whole}");
         let probe = |d: DVec3| 1.0 + d.x + d.y * d.z + d.z * d.z;
-        let by_density = over_all(2000, |d| sky.density(d) * probe(d));
+        let by_density = over_all_directions(2000, |d| sky.density(d) * probe(d));
         let by_choice = grid(400).map(|u| probe(sky.choose(u).0)).sum::<f64>() / 160_000.0;
         assert!((by_density - by_choice).abs() < 1e-2, "{by_density} and {by_choice}");
         for u in grid(50) {
@@ -288,7 +282,7 @@ mod tests {
     #[test]
     fn what_is_chosen_brings_the_light_of_the_whole_sky_and_hardly_varies() {
         let sky = sunny();
-        let whole = over_all(4000, |d| sky.radiance(d).x);
+        let whole = over_all_directions(4000, |d| sky.radiance(d).x);
         let carried: Vec<f64> =
             grid(1000).map(|u| sky.choose(u)).map(|(d, p)| sky.radiance(d).x / p).collect();
         let mean = carried.iter().sum::<f64>() / carried.len() as f64;

@@ -4,6 +4,7 @@ use super::*;
 use crate::diag::{SourceId, Span};
 use crate::math::Affine;
 use crate::scene::{Cone, Disc, Layers, Material, Rect, Texture, Torus, Triangle};
+use crate::world::even::grid;
 use crate::world::{EmitterShape, PrimitiveId};
 use std::sync::Arc;
 
@@ -19,10 +20,9 @@ fn emitter(shape: EmitterShape, place: Affine, radiance: f64) -> Light {
 
 /// E/π on a receiver, by n × n stratified samples.
 fn irradiance(light: &Light, at: DVec3, normal: DVec3, n: u32) -> f64 {
-    let cell = |i: u32| (f64::from(i) + 0.5) / f64::from(n);
     let mut sum = 0.0;
-    for (i, j) in (0..n).flat_map(|i| (0..n).map(move |j| (i, j))) {
-        if let Some(s) = light.sample(at, normal, DVec2::new(cell(i), cell(j))) {
+    for u in grid(n) {
+        if let Some(s) = light.sample(at, normal, u) {
             sum += s.weight.x * s.wi.dot(normal).max(0.0);
         }
     }
