@@ -60,6 +60,11 @@ impl<P: Point> FunctionPath<P> {
         self.error
     }
 
+    /// Of each interval its ends and the coefficients of its Chebyshev polynomials.
+    pub fn panels(&self) -> impl ExactSizeIterator<Item = (f64, f64, &[P])> {
+        self.panels.iter().map(|panel| (panel.start, panel.end, &panel.coefficients[..]))
+    }
+
     fn panel_at(&self, t: f64, side: Side) -> &Panel<P> {
         let after = self.panels.partition_point(|panel| panel.start <= t).saturating_sub(1);
         let back = side == Side::Before && after > 0 && self.panels[after].start == t;

@@ -6,7 +6,7 @@ use crate::diag::{Diagnostic, Span};
 use crate::math::field::CallN;
 use crate::scene::assets::Loader;
 use crate::scene::assets::gltf::{Model, ModelError};
-use crate::scene::{Node, Object, SampleInput, SampledFunction};
+use crate::scene::{Node, Object, Rig, SampleInput, SampledFunction};
 use crate::syntax::ast::Name;
 use glam::{DVec2, DVec3};
 use std::path::{Path, PathBuf};
@@ -100,6 +100,15 @@ pub trait Context {
     /// Tells where that reach ended, for the next frame.
     fn reached(&mut self, pose: Span, given: &[f64], found: &[f64]) {
         let _ = (pose, given, found);
+    }
+    /// In an animation, the skeleton that was read from this file for this block in a frame before.
+    fn skeleton_read(&self, path: &Path, block: Span) -> Option<Arc<Rig>> {
+        let _ = (path, block);
+        None
+    }
+    /// Keeps it for the next frame.
+    fn keep_skeleton(&mut self, path: &Path, rig: &Arc<Rig>) {
+        let _ = (path, rig);
     }
 }
 

@@ -13,6 +13,7 @@ mod linearizer;
 mod quadratic;
 mod rules;
 mod run;
+mod same;
 mod simplify;
 mod straight;
 
@@ -55,7 +56,7 @@ pub type CallN = fn(&[f64], &mut [f64]);
 pub const MAX_CALL: usize = 16;
 
 /// What is known of a function that a tape calls, so that it can be bounded over intervals too. The evaluation of points reads it of sines and cosines alone.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[allow(missing_docs, reason = "each is named for its function")]
 pub enum Rule {
     /// Nothing: any value, any jump.
@@ -104,7 +105,7 @@ pub enum Rule {
 }
 
 /// Operations on one number.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Unary {
     /// The same.
     Copy,
@@ -123,7 +124,7 @@ pub enum Unary {
 }
 
 /// Operations on two numbers. Comparisons give 1 or 0.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Binary {
     /// a + b.
     Add,
@@ -152,7 +153,11 @@ pub enum Binary {
 }
 
 /// A step of a tape. 16 bytes.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[allow(
+    unpredictable_function_pointer_comparisons,
+    reason = "one address is one code; one code at two addresses is only taken for two"
+)]
 pub enum Op {
     /// to ← op a.
     Unary(Unary, Register, Register),

@@ -207,12 +207,15 @@ impl Animation<'_> {
         self.set = run::settings(&mut means, &mut sink);
         self.files = state.files;
         self.faults = Some(sink);
+        if self.has_frames() {
+            self.kept = Kept::for_frames();
+        }
     }
 
     /// Evaluates a frame from the standing of the one before.
     fn evaluate(&mut self, frame: u32) -> Evaluated {
         let mut sink = self.faults.take().unwrap_or_default();
-        let keeps_trees = self.keeps_trees();
+        let has_frames = self.has_frames();
         let Some(root) = self.root else { return Evaluated::nothing(sink) };
         let options = match self.asked {
             Asked::Still => self.options.clone(),
@@ -230,7 +233,7 @@ impl Animation<'_> {
             ..State::default()
         };
         state.resolve(&means, root, &self.set, &mut sink);
-        if !keeps_trees {
+        if !has_frames {
             state.files.forget_trees();
         }
         let ran = state.run(&means, None, &mut sink);
@@ -238,8 +241,8 @@ impl Animation<'_> {
         Evaluated { scene: ran.scene, diagnostics: sink.into_sorted(), printed: run::printed(ran.said) }
     }
 
-    /// Whether there may be more than one frame to evaluate. Syntax trees of large scenes are worth forgetting.
-    fn keeps_trees(&self) -> bool {
+    /// Whether there may be more than one frame: for one alone nothing is worth keeping.
+    fn has_frames(&self) -> bool {
         match self.asked {
             Asked::Still => false,
             Asked::Whole => self.mentions("frames"),

@@ -1,9 +1,15 @@
-//! What stays of a world for the next one, frame by frame: meshes with their trees. A mesh of a file is known by its path, any other by the
-//! value of the scene that it is made of, which stays in models and wherever else several frames share it.
+//! What stays of a world for the next one, frame by frame: meshes with their trees, and what else is dear to make. What comes of a file is
+//! known by its path, a mesh that frames share by its address, and all else by its content, number by number: a scene is evaluated
+//! anew for each frame, and what comes out the same is not made again.
 //! Knows nothing of frames' times, nor of what else stands in a world.
+
+mod content;
 
 use super::shape::mesh::MeshShape;
 use crate::scene::{Material, MeshSource};
+pub(super) use content::{Content, Of};
+use std::any::Any;
+use std::cell::{Cell, RefCell};
 use std::collections::HashMap;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -11,13 +17,17 @@ use std::sync::Arc;
 /// How the mesh of a file is known: its path, and whether its normals are smooth, where that is asked.
 pub(super) type FileKey = (PathBuf, Option<bool>);
 
-/// Meshes of worlds that were made before, with their trees. Empty for a world that is made alone.
+/// What worlds that were made before leave. Empty for a world that is made alone.
 #[derive(Default)]
 pub struct Kept {
     with_trees: bool,
+    /// Whether worlds follow in which the same may stand.
+    goes_on: bool,
     files: HashMap<FileKey, KeptMesh>,
     /// By address; the source is kept so that no other takes its place.
     shared: HashMap<*const MeshSource, SharedMesh>,
+    made: RefCell<HashMap<Content, Made>>,
+    reused: Cell<u64>,
 }
 
 /// A mesh, ready for rays, and the materials of its file.
@@ -34,17 +44,39 @@ struct SharedMesh {
     used: bool,
 }
 
+struct Made {
+    what: Arc<dyn Any + Send + Sync>,
+    used: bool,
+}
+
 impl Kept {
+    /// For worlds that follow one another.
+    pub fn for_frames() -> Kept {
+        Kept { goes_on: true, ..Kept::default() }
+    }
+
     /// Before a world is made: what the last one did not use goes, and all of it where trees were not as they are now.
     pub(super) fn begin(&mut self, with_trees: bool) {
         if with_trees != self.with_trees {
-            *self = Kept { with_trees, ..Kept::default() };
+            *self = Kept { with_trees, goes_on: self.goes_on, ..Kept::default() };
         }
         self.shared.retain(|_, mesh| std::mem::take(&mut mesh.used));
+        self.reused.set(0);
+        self.made.get_mut().retain(|_, made| std::mem::take(&mut made.used));
+    }
+
+    /// How many things this world took over from those before.
+    pub(super) fn reused(&self) -> u64 {
+        self.reused.get()
+    }
+
+    fn reuse(&self) {
+        self.reused.update(|n| n + 1);
     }
 
     pub(super) fn file(&self, key: &FileKey) -> Option<KeptMesh> {
-        self.files.get(key).cloned()
+        let known = self.files.get(key).cloned();
+        known.inspect(|_| self.reuse())
     }
 
     pub(super) fn keep_file(&mut self, key: FileKey, mesh: KeptMesh) {
@@ -54,11 +86,38 @@ impl Kept {
     pub(super) fn shared(&mut self, source: &Arc<MeshSource>) -> Option<Arc<MeshShape>> {
         let mesh = self.shared.get_mut(&Arc::as_ptr(source))?;
         mesh.used = true;
+        self.reused.update(|n| n + 1);
         Some(Arc::clone(&mesh.shape))
     }
 
     pub(super) fn keep_shared(&mut self, source: &Arc<MeshSource>, shape: Arc<MeshShape>) {
         let mesh = SharedMesh { shape, _source: Arc::clone(source), used: true };
         self.shared.insert(Arc::as_ptr(source), mesh);
+    }
+
+    /// The content of something, written by `write`; none where no world follows that could ask for it.
+    pub(super) fn content(&self, of: Of, write: impl FnOnce(&mut Content)) -> Option<Content> {
+        self.goes_on.then(|| {
+            let mut content = Content::new(of);
+            write(&mut content);
+            content
+        })
+    }
+
+    /// What was made of this content, in this world or the one before.
+    pub(super) fn made<T: Any + Send + Sync>(&self, content: Option<&Content>) -> Option<Arc<T>> {
+        let mut made = self.made.borrow_mut();
+        let known = made.get_mut(content?)?;
+        known.used = true;
+        self.reuse();
+        Arc::clone(&known.what).downcast().ok()
+    }
+
+    /// Keeps what was made of a content.
+    pub(super) fn keep<T: Any + Send + Sync>(&self, content: Option<Content>, made: &Arc<T>) {
+        if let Some(content) = content {
+            let what: Arc<dyn Any + Send + Sync> = Arc::<T>::clone(made);
+            self.made.borrow_mut().insert(content, Made { what, used: true });
+        }
     }
 }

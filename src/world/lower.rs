@@ -45,7 +45,8 @@ pub(super) fn lower(
     sink.extend(super::texture::load_pictures(materials.iter().map(|m| &**m), assets));
     let (lights, emitters) = lights::gather(&aggregates, &materials, &mut sink);
     sink.extend(super::texture::load_skies(lights.iter().map(|placed| &*placed.light), assets));
-    (settled(World { lights, emitters, aggregates, materials }), sink.into_sorted())
+    let reused = kept.reused();
+    (settled(World { lights, emitters, aggregates, materials, reused }), sink.into_sorted())
 }
 
 /// See [`World::of_shapes`].
@@ -56,7 +57,8 @@ pub(super) fn lower_shapes(
 ) -> (World, Vec<Diagnostic>) {
     let (aggregates, materials, sink) = lowered(nodes, &WorldOptions::default(), assets, kept);
     let (lights, emitters) = (Vec::new(), Vec::new());
-    (settled(World { lights, emitters, aggregates, materials }), sink.into_sorted())
+    let reused = kept.reused();
+    (settled(World { lights, emitters, aggregates, materials, reused }), sink.into_sorted())
 }
 
 fn settled(mut world: World) -> World {

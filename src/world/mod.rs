@@ -106,6 +106,8 @@ pub struct WorldStats {
     pub trees: u64,
     /// Nodes of all trees.
     pub tree_nodes: u64,
+    /// Meshes, surfaces and weights of skins that frames before had made.
+    pub reused: u64,
 }
 
 /// Everything that rays see.
@@ -117,6 +119,8 @@ pub struct World {
     /// The first is the scene itself, the others are what is placed in it.
     aggregates: Vec<Aggregate>,
     materials: Vec<Arc<Material>>,
+    /// How many things were taken over from worlds before.
+    reused: u64,
 }
 
 /// A factor per colour channel.
@@ -207,7 +211,7 @@ impl World {
 
     /// What was made.
     pub fn stats(&self) -> WorldStats {
-        let mut stats = WorldStats::default();
+        let mut stats = WorldStats { reused: self.reused, ..WorldStats::default() };
         for aggregate in &self.aggregates {
             match aggregate {
                 Aggregate::Group(group) => {

@@ -281,3 +281,61 @@ fn files_are_read_once_for_all_frames() {
     let reads = loader.reads.lock().unwrap();
     assert!(reads.len() == 3 && reads.values().all(|n| *n == 1), "{reads:?}");
 }
+
+/// A mesh, a patch, a tube, an implicit surface and a skin that stand still, and a skin whose rest does.
+const MADE: &str = "render { size 12, 8  frames 4  samples 1 }
+camera { eye <0, 0, 9>  look_at <0, 0, 0> }
+light { point <2, 3, 8>  intensity 200 }
+let sheet = mesh { vertices [<0, 0, 0>, <1, 0, 0>, <0, 1, 0>, <1, 1, 0>]  faces [[0, 1, 2], [1, 3, 2]] }
+skeleton arm { joint a { hinge z  joint b { offset <1, 0, 0>  hinge z  tip end { offset <1, 0, 0> } } } }
+mesh { vertices [<-3, -2, 0>, <-2, -2, 0>, <-3, -1, 0>]  faces [[0, 1, 2]] }
+patch { bezier [<floor(k / 4) - 3, k % 4, k % 3> for k in 0..16] }
+tube { along curve(t => <t, -t * t, 0>, -1, 1)  radius 0.2 }
+implicit { f p => dot(p, p) - 0.5  within <-1, -1, -1>, <1, 1, 1>  translate <2, 0, 0> }
+pose still { of arm  a 20 }
+pose turning { of arm  a 90 * time }
+skin { surface sheet  skeleton arm  pose still  translate <0, 2, 0> }
+skin { surface sheet  skeleton arm  pose turning  translate <2, 2, 0> }
+";
+
+/// How much each frame takes over from the one before, and its picture.
+fn taken_over(text: &str) -> Vec<(u64, Vec<[f64; 3]>)> {
+    let files = BTreeMap::from([("a.scene", text.as_bytes().to_vec())]);
+    let loader = Arc::new(Counting { files, reads: Mutex::default() });
+    let mut session = Session::new(Options::default(), loader);
+    session.animate(Path::new("a.scene"), Asked::Whole, None, |animation| {
+        let frames = animation.frames().unwrap();
+        let made = frames.map(|frame| prepared(animation, frame));
+        made.map(|p| {
+            let pixels = p.render(&(), &false.into()).pixels;
+            (p.world.stats().reused, pixels.iter().map(|rgb| rgb.to_array()).collect())
+        })
+        .collect()
+    })
+}
+
+#[test]
+fn what_does_not_change_is_made_once_and_what_changes_is_made_anew() {
+    let frames = taken_over(MADE);
+    let reused: Vec<u64> = frames.iter().map(|(reused, _)| *reused).collect();
+    // Of the still ones all five, and of the moving skin its weights.
+    assert_eq!(reused[1..], [6; 3], "{reused:?}");
+    let folder = Folder::with(&[("a.scene", MADE)]);
+    folder.ogee("render a.scene -o {frame}.exr").expect(0);
+    folder.ogee("render a.scene -o alone.exr --frames 3").expect(0);
+    assert!(folder.read("alone.exr") == folder.read("3.exr"), "and it is the same alone");
+    for (still, moving, fewer) in [
+        ("<-3, -2, 0>,", "<-3, -2, time>,", 1),
+        ("k % 3>", "k % 3 + time>", 1),
+        ("radius 0.2", "radius 0.2 + 0.1 * time", 1),
+        ("- 0.5", "- 0.5 - 0.1 * time", 1),
+        // The skin is moved anew, by the weights that it had.
+        ("a 20", "a 20 + time", 0),
+        ("<0, 0, 9>", "<0, time, 9>", 1),
+    ] {
+        assert!(MADE.contains(still));
+        let frames = taken_over(&MADE.replace(still, moving));
+        assert_eq!(frames[2].0 as i64, 6 - fewer, "{moving}");
+        assert!(frames[1].1 != frames[2].1, "{moving}: it moves");
+    }
+}

@@ -72,11 +72,19 @@ impl PatchTree {
     pub fn new(pieces: &[Bicubic]) -> PatchTree {
         let mut parts = Vec::new();
         for (index, piece) in pieces.iter().enumerate() {
-            let whole = Part::new(index as u32, piece, (0.0, 1.0), (0.0, 1.0));
-            cut(whole, (0, 0), &mut parts);
+            parts_of(index as u32, piece, &mut parts);
         }
         let tree = BoxTree::build(&mut parts, LEAF, Part::bounds);
         PatchTree { pieces: pieces.to_vec(), parts, tree }
+    }
+
+    /// Whether there would be anything to meet: false where all pieces are shrunk to curves and points.
+    pub fn would_hold(pieces: &[Bicubic]) -> bool {
+        let mut parts = Vec::new();
+        pieces.iter().any(|piece| {
+            parts_of(0, piece, &mut parts);
+            !parts.is_empty()
+        })
     }
 
     /// The pieces it was made from.
@@ -230,6 +238,11 @@ fn differences(p: &[[DVec3; 4]; 4]) -> ([DVec3; 12], [DVec3; 12]) {
     let along_u = std::array::from_fn(|k| p[k / 4 + 1][k % 4] - p[k / 4][k % 4]);
     let along_v = std::array::from_fn(|k| p[k % 4][k / 4 + 1] - p[k % 4][k / 4]);
     (along_u, along_v)
+}
+
+/// Adds the parts of a piece that have area.
+fn parts_of(index: u32, piece: &Bicubic, parts: &mut Vec<Part>) {
+    cut(Part::new(index, piece, (0.0, 1.0), (0.0, 1.0)), (0, 0), parts);
 }
 
 /// Halves a part until it is nearly flat; drops it without area.

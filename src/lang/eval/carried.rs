@@ -1,11 +1,12 @@
-//! What a frame of an animation hands to the next one: where its reaches ended, so that an arm moves on from there, and the models that
-//! were read. Everything else is made anew. Knows nothing of files to write, nor of which frames are wanted.
+//! What a frame of an animation hands to the next one: where its reaches ended, so that an arm moves on from there, and the models and
+//! motion capture that were read. Everything else is made anew. Knows nothing of files to write, nor of which frames are wanted.
 
 use super::{Evaluator, Standing};
 use crate::diag::Span;
+use crate::scene::Rig;
 use crate::scene::assets::gltf::{Model, ModelError};
 use std::collections::HashMap;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// Models by path, or why one cannot be had.
@@ -16,8 +17,20 @@ pub(super) type Models = HashMap<PathBuf, Result<Arc<Model>, ModelError>>;
 #[derive(Default)]
 pub(super) struct Carried {
     models: Models,
+    /// Of motion capture, by its file and the place of its block.
+    skeletons: HashMap<(PathBuf, Span), Arc<Rig>>,
     before: HashMap<Span, Vec<Reached>>,
     now: HashMap<Span, Vec<Reached>>,
+}
+
+impl Carried {
+    pub(super) fn skeleton(&self, path: &Path, block: Span) -> Option<Arc<Rig>> {
+        self.skeletons.get(&(path.to_owned(), block)).cloned()
+    }
+
+    pub(super) fn keep_skeleton(&mut self, path: &Path, rig: &Arc<Rig>) {
+        self.skeletons.insert((path.to_owned(), rig.span), Arc::clone(rig));
+    }
 }
 
 /// A reach: the coordinates that the scene gave, and those that were found.

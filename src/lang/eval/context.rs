@@ -8,7 +8,7 @@ use crate::lang::table::{Context, Gives, Outcome, Trace};
 use crate::lang::value::Value;
 use crate::scene::assets::Loader;
 use crate::scene::assets::gltf::{Model, ModelError};
-use crate::scene::{SampleInput, SampledFunction};
+use crate::scene::{Rig, SampleInput, SampledFunction};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -90,6 +90,16 @@ impl Context for Evaluator<'_> {
 
     fn reached(&mut self, pose: Span, given: &[f64], found: &[f64]) {
         self.carry_reach(pose, given, found);
+    }
+
+    fn skeleton_read(&self, path: &Path, block: Span) -> Option<Arc<Rig>> {
+        self.standing.carried.as_ref()?.skeleton(path, block)
+    }
+
+    fn keep_skeleton(&mut self, path: &Path, rig: &Arc<Rig>) {
+        if let Some(carried) = &mut self.standing.carried {
+            carried.keep_skeleton(path, rig);
+        }
     }
 }
 

@@ -1,10 +1,12 @@
 //! Files read and decoded once, whoever asks and from however many threads.
 
 use super::Loader;
+use super::bpt::load_bpt;
 use super::gltf::{Model, ModelError};
 use super::image::{Image, ImageError};
 use super::obj::{LoadedMesh, load_obj};
 use crate::diag::{Diagnostic, Span};
+use crate::geometry::patch::Patch;
 use std::collections::HashMap;
 use std::io;
 use std::path::{Path, PathBuf};
@@ -36,18 +38,25 @@ impl AssetError {
 type Slot<T, E> = Arc<OnceLock<Result<Arc<T>, E>>>;
 type Slots<K, T, E> = Mutex<HashMap<K, Slot<T, E>>>;
 
-/// The pictures, meshes and models of a run by their path. What is asked for twice is read once; who comes second waits for the first.
+/// The pictures, meshes, patches and models of a run by their path. What is asked for twice is read once; who comes second waits for the first.
 pub struct AssetCache<'a> {
     loader: &'a dyn Loader,
     images: Slots<PathBuf, Image, AssetError>,
     meshes: Slots<(PathBuf, Option<bool>), LoadedMesh, Box<Diagnostic>>,
     models: Slots<PathBuf, Model, ModelError>,
+    patches: Slots<PathBuf, Patch, Box<Diagnostic>>,
 }
 
 impl<'a> AssetCache<'a> {
     /// An empty cache over a loader.
     pub fn new(loader: &'a dyn Loader) -> Self {
-        AssetCache { loader, images: Mutex::default(), meshes: Mutex::default(), models: Mutex::default() }
+        AssetCache {
+            loader,
+            images: Mutex::default(),
+            meshes: Mutex::default(),
+            models: Mutex::default(),
+            patches: Mutex::default(),
+        }
     }
 
     /// The way files are read.
@@ -70,6 +79,12 @@ impl<'a> AssetCache<'a> {
     pub fn model(&self, path: &Path) -> Result<Arc<Model>, ModelError> {
         let slot = slot(&self.models, path.to_owned());
         slot.get_or_init(|| Model::read(self.loader, path).map(Arc::new)).clone()
+    }
+
+    /// Patches by [`load_bpt`]. A diagnostic has the place of whoever asked first.
+    pub fn patch(&self, path: &Path, span: Span) -> Result<Arc<Patch>, Box<Diagnostic>> {
+        let slot = slot(&self.patches, path.to_owned());
+        slot.get_or_init(|| load_bpt(self, path, span).map(Arc::new)).clone()
     }
 
     /// A mesh by [`load_obj`]. Diagnostics, and the materials of its file, have the place of whoever asked first.

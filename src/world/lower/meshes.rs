@@ -6,7 +6,7 @@ use crate::geometry::mesh::Mesh;
 use crate::scene::assets::obj::load_obj;
 use crate::scene::{Material, MeshSource};
 use crate::world::aggregate::{Aggregate, MeshAggregate};
-use crate::world::kept::{FileKey, KeptMesh};
+use crate::world::kept::{Content, FileKey, KeptMesh, Of};
 use crate::world::shape::EVERYTHING;
 use crate::world::shape::mesh::{MeshShape, Worn};
 use std::collections::HashMap;
@@ -28,7 +28,7 @@ impl Lowering<'_> {
             return *known;
         }
         match Arc::try_unwrap(source) {
-            Ok(MeshSource::Inline(mesh)) => self.keep_mesh(mesh, Vec::new(), span),
+            Ok(MeshSource::Inline(mesh)) => self.own_mesh(mesh, span),
             Ok(file @ MeshSource::File { .. }) => self.mesh_of(&file, span),
             Err(shared) => {
                 let index = self.shared_mesh(&shared, span);
@@ -36,6 +36,29 @@ impl Lowering<'_> {
                 index
             }
         }
+    }
+
+    /// A mesh of the scene's text that nobody else holds.
+    fn own_mesh(&mut self, mesh: Mesh, span: Span) -> Option<u32> {
+        let content = self.kept.content(Of::Mesh, |content| content.mesh(&mesh));
+        self.same_mesh(content, |lowering| lowering.shape_of(mesh, None, span))
+    }
+
+    /// The mesh that was made of this content before, or what is made now.
+    pub(super) fn same_mesh(
+        &mut self,
+        content: Option<Content>,
+        make: impl FnOnce(&mut Self) -> Option<Arc<MeshShape>>,
+    ) -> Option<u32> {
+        let shape = match self.kept.made(content.as_ref()) {
+            Some(known) => known,
+            None => {
+                let shape = make(self)?;
+                self.kept.keep(content, &shape);
+                shape
+            }
+        };
+        Some(self.keep_shape(shape, Vec::new()))
     }
 
     /// A mesh that others hold as well: perhaps a world before, and perhaps one after.
@@ -55,7 +78,7 @@ impl Lowering<'_> {
 
     fn mesh_of(&mut self, source: &MeshSource, span: Span) -> Option<u32> {
         match source {
-            MeshSource::Inline(mesh) => self.keep_mesh(mesh.clone(), Vec::new(), span),
+            MeshSource::Inline(mesh) => self.own_mesh(mesh.clone(), span),
             MeshSource::File { path, smooth, span } => {
                 let key = (path.clone(), *smooth);
                 if let Some(known) = self.meshes.by_file.get(&key) {
@@ -89,25 +112,8 @@ impl Lowering<'_> {
         Some((loaded.mesh.clone(), loaded.materials.clone()))
     }
 
-    /// Builds the tree of a mesh.
-    pub(super) fn keep_mesh(&mut self, mesh: Mesh, materials: Vec<Arc<Material>>, span: Span) -> Option<u32> {
-        self.keep_worn(mesh, None, materials, span)
-    }
-
-    /// Builds the tree of a mesh that may be a skin.
-    pub(super) fn keep_worn(
-        &mut self,
-        mesh: Mesh,
-        worn: Option<Worn>,
-        materials: Vec<Arc<Material>>,
-        span: Span,
-    ) -> Option<u32> {
-        let shape = self.shape_of(mesh, worn, span)?;
-        Some(self.keep_shape(shape, materials))
-    }
-
-    /// A mesh with its tree; none, said, where it has no triangles.
-    fn shape_of(&mut self, mesh: Mesh, worn: Option<Worn>, span: Span) -> Option<Arc<MeshShape>> {
+    /// A mesh, which may be a skin, with its tree; none, said, where it has no triangles.
+    pub(super) fn shape_of(&mut self, mesh: Mesh, worn: Option<Worn>, span: Span) -> Option<Arc<MeshShape>> {
         if mesh.triangles.is_empty() {
             let message = "this mesh has no triangles: nothing of it is seen";
             self.sink.push(Diagnostic::new(Code::MeshRepaired, span, message));
@@ -116,7 +122,7 @@ impl Lowering<'_> {
         Some(Arc::new(MeshShape::new(Arc::new(mesh), worn, self.with_trees)))
     }
 
-    fn keep_shape(&mut self, shape: Arc<MeshShape>, materials: Vec<Arc<Material>>) -> u32 {
+    pub(super) fn keep_shape(&mut self, shape: Arc<MeshShape>, materials: Vec<Arc<Material>>) -> u32 {
         let materials = materials.into_iter().map(|m| self.materials.number(m)).collect();
         let bounds = if shape.tree.is_unbounded() { EVERYTHING } else { shape.tree.bounds() };
         self.keep(Aggregate::Mesh(MeshAggregate { shape, bounds, materials }))

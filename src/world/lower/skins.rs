@@ -13,8 +13,9 @@ use crate::scene::{
     Material, MeshSource, PatchNet, SampledFunction, Skin, SkinSurface, Surface, Weights, divided_weights,
     unusable_weights,
 };
+use crate::world::kept::{Content, Of};
 use crate::world::shape::Form;
-use crate::world::shape::mesh::Worn;
+use crate::world::shape::mesh::{MeshShape, Worn};
 use glam::DVec3;
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -58,41 +59,72 @@ impl Lowering<'_> {
         if let Some((known, _)) = self.skins.0.get(&Arc::as_ptr(skin)) {
             return *known;
         }
-        let made = self.bent(skin, span);
-        let index =
-            made.and_then(|(mesh, worn, materials)| self.keep_worn(mesh, Some(worn), materials, span));
+        let views = self.surfaces.views_of(skin);
+        let content = self.kept.content(Of::Skin, |content| {
+            content.skin(skin);
+            let views = views.as_ref().filter(|_| matches!(skin.surface, SkinSurface::Curved(_)));
+            content.maybe(views, |content, views| views.write(content));
+        });
+        let made = match self.kept.made::<Bent>(content.as_ref()) {
+            Some(known) => Some(known),
+            None => self.bent(skin, views, span).map(Arc::new),
+        };
+        let index = made.map(|bent| {
+            self.kept.keep(content, &bent);
+            self.keep_shape(Arc::clone(&bent.shape), bent.materials.clone())
+        });
         self.skins.0.insert(Arc::as_ptr(skin), (index, Arc::clone(skin)));
         index
     }
 
-    /// The mesh of a skin in its pose, with what it was at rest.
-    fn bent(&mut self, skin: &Arc<Skin>, span: Span) -> Option<(Mesh, Worn, Vec<Arc<Material>>)> {
+    /// A skin in its pose.
+    fn bent(&mut self, skin: &Skin, views: Option<Views>, span: Span) -> Option<Bent> {
         let (mut mesh, materials) = match &skin.surface {
             SkinSurface::Mesh(source) => {
                 let (mesh, materials) = self.mesh_at_rest(source)?;
                 (placed(mesh, skin.transform.as_ref()), materials)
             }
             SkinSurface::Curved(surface) => {
-                let views = self.surfaces.views_of(skin);
                 let curved = self.curved(surface, span)?;
                 (self.said(skin, curved_at_rest(skin, &curved, views))?, Vec::new())
             }
         };
-        let influences = self.said(skin, influences(skin, &mesh.positions))?;
+        let influences = self.said(skin, self.influences(skin, &mesh.positions))?;
         self.warn_of_sums(skin, &influences);
         let rest = mesh.positions.clone();
         let normals = match skin.weights.follow_the_point() {
             false => None,
             true => {
                 let size = mesh.bounds().size().length();
-                let bent = bent_normals(&rest, &mesh.normals, size, &|points| images(skin, points));
+                let images = |points: &[DVec3]| {
+                    self.influences(skin, points).map(|weights| moved(skin, points, &weights))
+                };
+                let bent = bent_normals(&rest, &mesh.normals, size, &images);
                 Some(self.said(skin, bent)?)
             }
         };
         deform(&mut mesh, &influences.rows, &skin.armature.motions, skin.blend);
         mesh.normals = normals.unwrap_or(mesh.normals);
-        let worn = Worn { rest, influences: influences.rows, armature: Arc::clone(&skin.armature) };
-        Some((mesh, worn, materials))
+        let rows = influences.rows.clone();
+        let worn = Worn { rest, influences: rows, armature: Arc::clone(&skin.armature) };
+        Some(Bent { shape: self.shape_of(mesh, Some(worn), span)?, materials })
+    }
+
+    /// The weights of points at rest, which a mesh has again in the next frame.
+    fn influences(&self, skin: &Skin, points: &[DVec3]) -> Result<Arc<Rows>, WeightFault> {
+        let is_mesh = matches!(skin.surface, SkinSurface::Mesh(_));
+        let write = |content: &mut Content| {
+            content.weights(&skin.weights);
+            content.bones(&skin.armature);
+            content.points(points);
+        };
+        let content = is_mesh.then(|| self.kept.content(Of::Weights, write)).flatten();
+        if let Some(known) = self.kept.made(content.as_ref()) {
+            return Ok(known);
+        }
+        let rows = Arc::new(influences(skin, points)?);
+        self.kept.keep(content, &rows);
+        Ok(rows)
     }
 
     fn mesh_at_rest(&mut self, source: &MeshSource) -> Option<(Mesh, Vec<Arc<Material>>)> {
@@ -121,6 +153,12 @@ impl Lowering<'_> {
         let Some((point, sum)) = rows.off else { return };
         self.sink.push(divided_weights(place(skin), &at(point), sum));
     }
+}
+
+/// A skin in its pose, ready for rays, and the materials of its file.
+struct Bent {
+    shape: Arc<MeshShape>,
+    materials: Vec<Arc<Material>>,
 }
 
 /// Rows of weights, and the first point whose sum was not 1.
@@ -190,10 +228,14 @@ fn curved_at_rest(skin: &Skin, curved: &Curved, views: Option<Views>) -> Result<
 
 /// Where points at rest are taken.
 fn images(skin: &Skin, points: &[DVec3]) -> Result<Vec<DVec3>, WeightFault> {
-    let rows = influences(skin, points)?.rows;
+    Ok(moved(skin, points, &influences(skin, points)?))
+}
+
+/// Where points of these weights are taken.
+fn moved(skin: &Skin, points: &[DVec3], weights: &Rows) -> Vec<DVec3> {
     let mut moved = Mesh { positions: points.to_vec(), ..Mesh::default() };
-    deform(&mut moved, &rows, &skin.armature.motions, skin.blend);
-    Ok(moved.positions)
+    deform(&mut moved, &weights.rows, &skin.armature.motions, skin.blend);
+    moved.positions
 }
 
 /// The weights of points at rest.

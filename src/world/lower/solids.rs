@@ -5,6 +5,7 @@ use super::{Around, Lowering, shapes};
 use crate::diag::{Code, Diagnostic, Span};
 use crate::scene::{self, CsgOp, Node, Object, Shape, solid_fault};
 use crate::world::aggregate::Aggregate;
+use crate::world::kept::{Content, Of};
 use crate::world::shape::csg::{Part, Solid};
 use crate::world::shape::{self as world, Csg};
 use std::collections::HashMap;
@@ -98,7 +99,15 @@ impl Lowering<'_> {
         }
         let (min, max) = implicit.within;
         let steepest = implicit.gradient.map(|(bound, _)| bound);
-        let made = Arc::new(world::Implicit::new(Arc::clone(&implicit.function), min, max, steepest));
+        let content = self.kept.content(Of::Implicit, |content| {
+            content.function(&implicit.function);
+            content.points(&[min, max]);
+            content.maybe(steepest, Content::number);
+        });
+        let made = self.kept.made(content.as_ref()).unwrap_or_else(|| {
+            Arc::new(world::Implicit::new(Arc::clone(&implicit.function), min, max, steepest))
+        });
+        self.kept.keep(content, &made);
         if let (Some((bound, at)), Some((p, slope))) = (implicit.gradient, made.broken_promise()) {
             let place = p.to_array().map(|x| format!("{x:.3}")).join(", ");
             let message = format!("the gradient of `f` is {slope:.4} at <{place}>, more than {bound}");

@@ -3,7 +3,8 @@
 use super::Lowering;
 use super::views::{self, Views};
 use crate::diag::{Code, Diagnostic, Span};
-use crate::geometry::patch::{Patch, tessellate};
+use crate::geometry::mesh::Mesh;
+use crate::geometry::patch::{Patch, PatchTree, tessellate};
 use crate::geometry::path::Path;
 use crate::geometry::surface::cubic::of_measured;
 use crate::geometry::surface::lathe::Lathe;
@@ -12,9 +13,9 @@ use crate::geometry::surface::prism::{Placing, Prism};
 use crate::geometry::surface::sweep::Sweep;
 use crate::geometry::surface::tube::Tube;
 use crate::math::Aabb;
-use crate::scene::assets::bpt::load_bpt;
 use crate::scene::{Along, Node, PatchMethod, PatchNet, PatchSource, Surface};
 use crate::world::Footprint;
+use crate::world::kept::{Content, Of};
 use crate::world::shape::{Form, PatchShape, Shape, Swept};
 use std::collections::HashMap;
 use std::path::PathBuf;
@@ -77,12 +78,22 @@ impl Lowering<'_> {
         let drawn = match &*source {
             Surface::Patch(patch) => self.patch(patch, views, span),
             Surface::Tube(_) | Surface::Lathe(_) | Surface::Extrude(_) => {
-                let form = self.form(&source, span);
-                form.map(|form| Drawn::Shape(Shape::Swept(Arc::new(Swept::new(form)))))
+                self.swept(&source, span).map(|swept| Drawn::Shape(Shape::Swept(swept)))
             }
         };
         self.surfaces.by_source.insert(address, (drawn.clone(), source));
         drawn
+    }
+
+    /// A surface along curves, ready for rays.
+    fn swept(&mut self, source: &Surface, span: Span) -> Option<Arc<Swept>> {
+        let content = self.kept.content(Of::Swept, |content| content.surface(source));
+        if let Some(known) = self.kept.made(content.as_ref()) {
+            return Some(known);
+        }
+        let swept = Arc::new(Swept::new(self.form(source, span)?));
+        self.kept.keep(content, &swept);
+        Some(swept)
     }
 
     /// The kernel of a surface along curves; says why there is none.
@@ -99,8 +110,7 @@ impl Lowering<'_> {
             PatchNet::Inline(patch) => patch,
             PatchNet::File { path, span } => &*self.patch_file(path, *span)?,
         };
-        let shape = PatchShape::new(patch);
-        if shape.bounds().is_empty() {
+        if !PatchTree::would_hold(patch.pieces()) {
             let fault =
                 Diagnostic::new(Code::BadGeometry, span, "this patch has no area: nothing of it is seen");
             self.sink.push(fault);
@@ -109,16 +119,17 @@ impl Lowering<'_> {
         match views {
             Some(views) if source.method != Some(PatchMethod::Direct) => {
                 let views = views.settled(patch.bounds());
-                let mesh = match source.tolerance {
-                    Some(tolerance) => tessellate::tessellate(patch, &|_| tolerance),
-                    None => tessellate::tessellate(patch, &|points| {
-                        let around = Aabb::of(points.iter().copied());
-                        tolerance(&views, around, around.size().length())
-                    }),
+                let content = self.kept.content(Of::Tessellation, |content| {
+                    content.patch(patch);
+                    content.maybe(source.tolerance, Content::number);
+                    views.write(content);
+                });
+                let make = |lowering: &mut Self| {
+                    lowering.shape_of(tessellated(patch, source.tolerance, &views), None, span)
                 };
-                self.keep_mesh(mesh, Vec::new(), span).map(Drawn::Mesh)
+                self.same_mesh(content, make).map(Drawn::Mesh)
             }
-            _ => Some(Drawn::Shape(Shape::Patch(Arc::new(shape)))),
+            _ => Some(Drawn::Shape(Shape::Patch(Arc::new(PatchShape::new(patch))))),
         }
     }
 
@@ -127,15 +138,20 @@ impl Lowering<'_> {
         if let Some(known) = self.surfaces.by_file.get(path) {
             return known.clone();
         }
-        let patch = match load_bpt(self.assets, path, span) {
-            Ok(patch) => Some(Arc::new(patch)),
-            Err(fault) => {
-                self.sink.push(*fault);
-                None
-            }
-        };
+        let patch = self.assets.patch(path, span).map_err(|fault| self.sink.push(*fault)).ok();
         self.surfaces.by_file.insert(path.clone(), patch.clone());
         patch
+    }
+}
+
+/// A patch as triangles within a tolerance, or as finely as it is seen.
+fn tessellated(patch: &Patch, allowed: Option<f64>, views: &Views) -> Mesh {
+    match allowed {
+        Some(allowed) => tessellate::tessellate(patch, &|_| allowed),
+        None => tessellate::tessellate(patch, &|points| {
+            let around = Aabb::of(points.iter().copied());
+            tolerance(views, around, around.size().length())
+        }),
     }
 }
 

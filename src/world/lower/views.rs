@@ -3,6 +3,7 @@
 use crate::math::{Aabb, Affine};
 use crate::scene::{LightSource, Node, Object, Shape};
 use crate::world::Footprint;
+use crate::world::kept::Content;
 use std::collections::HashMap;
 use std::sync::Arc;
 
@@ -19,6 +20,15 @@ impl Views {
     /// The smallest pixel near a box.
     pub fn pixel(&self, near: Aabb) -> f64 {
         self.0.iter().map(|view| view.at(near)).fold(f64::INFINITY, f64::min)
+    }
+
+    /// Writes what a tolerance follows from.
+    pub fn write(&self, content: &mut Content) {
+        content.word(self.0.len());
+        for Footprint { eye, per_distance, constant } in &self.0 {
+            content.point(*eye);
+            content.numbers([*per_distance, *constant]);
+        }
     }
 
     /// The same views, few enough to be asked again and again for parts of a box.

@@ -41,14 +41,14 @@ fn skeleton(ctx: &mut dyn Context, block: Block) -> Outcome {
     let rig = match (block.has("file"), block.has("joint")) {
         (true, true) => return Err(conflict(ctx, &block, "file", "joint")),
         (true, false) => captured(ctx, &block)?,
-        (false, true) => Rig::new(assembled(ctx, &block)?, None, block.span),
+        (false, true) => Arc::new(Rig::new(assembled(ctx, &block)?, None, block.span)),
         (false, false) => {
             let said = Diagnostic::new(Code::MissingProperty, block.kind_span, "a `skeleton` needs a joint")
                 .hint("write `skeleton arm { joint shoulder { hinge z } }`, or `skeleton man { file \"walk.bvh\" }`");
             return Err(ctx.fail(said));
         }
     };
-    Ok(Value::Skeleton(Arc::new(rig)))
+    Ok(Value::Skeleton(rig))
 }
 
 /// A skeleton from its parts; every name that is there twice is said.
@@ -86,9 +86,12 @@ fn twice(part: &Part, first: Span) -> Diagnostic {
 }
 
 /// The skeleton of a file, with its motion.
-fn captured(ctx: &mut dyn Context, block: &Block) -> Outcome<Rig> {
+fn captured(ctx: &mut dyn Context, block: &Block) -> Outcome<Arc<Rig>> {
     let (written, span) = (block.text("file").unwrap_or_default(), block.place("file"));
     let path = existing_file(ctx, written, span)?;
+    if let Some(known) = ctx.skeleton_read(&path, block.span) {
+        return Ok(known);
+    }
     let bytes = match ctx.loader().read(&path) {
         Ok(bytes) => bytes,
         Err(why) => {
@@ -98,7 +101,11 @@ fn captured(ctx: &mut dyn Context, block: &Block) -> Outcome<Rig> {
     };
     ctx.reserve(bytes.len() / BYTES_AN_ELEMENT, span)?;
     match mocap::read(bytes, super::is_reserved) {
-        Ok((skeleton, motion)) => Ok(Rig::new(skeleton, Some(motion), block.span)),
+        Ok((skeleton, motion)) => {
+            let rig = Arc::new(Rig::new(skeleton, Some(motion), block.span));
+            ctx.keep_skeleton(&path, &rig);
+            Ok(rig)
+        }
         Err(error) => {
             let message = format!("the motion capture file `{written}` cannot be used: {error}");
             let hint = "a .bvh file holds `HIERARCHY` with `ROOT` and `JOINT`s, then `MOTION` with a line of numbers a frame";
