@@ -4,6 +4,8 @@
 //! reader can plot again without measuring again. Topological errors (missed, spurious, wrong first) are counts of their
 //! own and never averaged into magnitudes.
 //!
+//! Tracers are measured on scenes instead ([`tracers`]).
+//!
 //! Case sets are seeded, so that every error comes again; what is compared with is kept here (`naive`) and not in the rooms of the
 //! kernels. A [`trial::Trial`] holds the variants of one component on one case set.
 
@@ -14,6 +16,7 @@ pub mod page;
 pub mod plot;
 pub mod row;
 pub mod store;
+pub mod tracers;
 pub mod trial;
 
 use row::Row;

@@ -121,7 +121,7 @@ fn wrong(row: &Row) -> usize {
 }
 
 /// The different names, in the order they first come.
-fn names<'a>(all: impl Iterator<Item = &'a String>) -> Vec<String> {
+pub(super) fn names<'a>(all: impl Iterator<Item = &'a String>) -> Vec<String> {
     let mut names: Vec<String> = Vec::new();
     all.for_each(|name| {
         if !names.contains(name) {

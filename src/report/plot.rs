@@ -3,6 +3,7 @@
 
 mod axis;
 mod labels;
+pub mod lines;
 
 use axis::Axis;
 use labels::{Labels, Rect};
@@ -63,18 +64,23 @@ const BOTTOM: f64 = 46.0;
 
 /// All panels of a component as one SVG file.
 pub fn scatter(title: &str, panels: &[Panel]) -> String {
-    let columns = panels.len().clamp(1, COLUMNS);
-    let rows = panels.len().div_ceil(columns);
+    page(title, panels.len(), |svg, i| draw(svg, &panels[i]))
+}
+
+/// So many panels, each drawn by its number, as one SVG file.
+fn page(title: &str, n: usize, mut draw: impl FnMut(&mut String, usize)) -> String {
+    let columns = n.clamp(1, COLUMNS);
+    let rows = n.div_ceil(columns);
     let (width, height) = (WIDTH * columns as f64, HEIGHT * rows as f64 + 34.0);
     let mut svg = format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" viewBox=\"0 0 {width} {height}\" \
          font-family=\"sans-serif\" font-size=\"11\">\n<rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n"
     );
     text(&mut svg, (14.0, 22.0), "start", "font-size=\"15\" font-weight=\"bold\"", title);
-    for (i, panel) in panels.iter().enumerate() {
+    for i in 0..n {
         let (x, y) = (WIDTH * (i % columns) as f64, 34.0 + HEIGHT * (i / columns) as f64);
         let _ = writeln!(svg, "<g transform=\"translate({x} {y})\">");
-        draw(&mut svg, panel);
+        draw(&mut svg, i);
         svg.push_str("</g>\n");
     }
     svg.push_str("</svg>\n");
@@ -85,12 +91,8 @@ fn draw(svg: &mut String, panel: &Panel) {
     let points = &panel.points;
     let x = Axis::fine(points.iter().map(|p| p.cost), LEFT, WIDTH - RIGHT);
     let y = Axis::decades(points.iter().map(|p| p.error), HEIGHT - BOTTOM, TOP);
-    text(svg, (LEFT, TOP - 10.0), "start", "font-size=\"12\" font-weight=\"bold\"", &panel.title);
+    frame(svg, &panel.title, &panel.cost_label, &panel.error_label);
     grid(svg, &x, &y);
-    text(svg, ((LEFT + WIDTH - RIGHT) / 2.0, HEIGHT - 10.0), "middle", "", &panel.cost_label);
-    let middle = (TOP + HEIGHT - BOTTOM) / 2.0;
-    let turned = format!("transform=\"rotate(-90 14 {middle:.1})\"");
-    text(svg, (14.0, middle), "middle", &turned, &panel.error_label);
     let place = |p: &Point| (x.at(p.cost), y.at(p.error));
     let line: Vec<(f64, f64)> = frontier(points).iter().map(|&i| place(&points[i])).collect();
     let path: Vec<String> = line.iter().map(|(x, y)| format!("{x:.1},{y:.1}")).collect();
@@ -102,6 +104,15 @@ fn draw(svg: &mut String, panel: &Panel) {
     for point in points {
         mark(svg, &mut labels, place(point), point);
     }
+}
+
+/// A panel's title and the names of its axes.
+fn frame(svg: &mut String, title: &str, cost: &str, error: &str) {
+    text(svg, (LEFT, TOP - 10.0), "start", "font-size=\"12\" font-weight=\"bold\"", title);
+    text(svg, ((LEFT + WIDTH - RIGHT) / 2.0, HEIGHT - 10.0), "middle", "", cost);
+    let middle = (TOP + HEIGHT - BOTTOM) / 2.0;
+    let turned = format!("transform=\"rotate(-90 14 {middle:.1})\"");
+    text(svg, (14.0, middle), "middle", &turned, error);
 }
 
 fn grid(svg: &mut String, x: &Axis, y: &Axis) {

@@ -1,7 +1,9 @@
-//! Results as JSON lines: a file for each component, the machine first, then a row a line.
+//! Results as JSON lines: a file for each component or scene, the machine first, then a row a line.
 
 use super::page::{Page, slug};
 use super::row::{Machine, Row};
+use serde::Serialize;
+use serde::de::DeserializeOwned;
 
 /// Why a file of results could not be read.
 #[derive(Debug, thiserror::Error)]
@@ -13,11 +15,11 @@ pub struct StoreError {
     pub error: serde_json::Error,
 }
 
-/// A file for each component: "results/cubic-evaluation.jsonl".
-pub fn write(machine: &Machine, rows: &[Row]) -> Vec<Page> {
+/// A file for each group of rows, which are components or scenes: "results/cubic-evaluation.jsonl".
+pub fn write<R: Serialize>(machine: &Machine, rows: &[R], group: impl Fn(&R) -> &str) -> Vec<Page> {
     let mut files: Vec<Page> = Vec::new();
     for row in rows {
-        let name = format!("results/{}.jsonl", slug(&row.component));
+        let name = format!("results/{}.jsonl", slug(group(row)));
         let at = files.iter().position(|file| file.name == name).unwrap_or_else(|| {
             files.push(Page { name, text: line(machine) });
             files.len() - 1
@@ -27,19 +29,19 @@ pub fn write(machine: &Machine, rows: &[Row]) -> Vec<Page> {
     files
 }
 
-fn line(value: &impl serde::Serialize) -> String {
+fn line(value: &impl Serialize) -> String {
     serde_json::to_string(value).expect("numbers and strings are always written") + "\n"
 }
 
 /// The machine and the rows of one file.
-pub fn read(text: &str) -> Result<(Machine, Vec<Row>), StoreError> {
+pub fn read<R: DeserializeOwned>(text: &str) -> Result<(Machine, Vec<R>), StoreError> {
     let mut lines = text.lines().enumerate();
     let fault = |line: usize| move |error| StoreError { line: line + 1, error };
     let machine = match lines.next() {
         Some((i, first)) => serde_json::from_str(first).map_err(fault(i))?,
         None => Machine::default(),
     };
-    let rows: Result<Vec<Row>, StoreError> =
+    let rows: Result<Vec<R>, StoreError> =
         lines.map(|(i, text)| serde_json::from_str(text).map_err(fault(i))).collect();
     Ok((machine, rows?))
 }
@@ -59,13 +61,13 @@ mod tests {
             Row { component: "a b".into(), error_max: 0.1 + 0.2, bar: Some(0.0), n: 7, ..Row::default() };
         let other = Row { component: "c".into(), ..Row::default() };
         let machine = Machine { seed: 3, ..Machine::default() };
-        let files = write(&machine, &[row.clone(), other, row.clone()]);
+        let files = write(&machine, &[row.clone(), other, row.clone()], |row| &row.component);
         assert_eq!(
             files.iter().map(|f| &*f.name).collect::<Vec<_>>(),
             ["results/a-b.jsonl", "results/c.jsonl"]
         );
-        let (again, rows) = read(&files[0].text).unwrap();
+        let (again, rows) = read::<Row>(&files[0].text).unwrap();
         assert_eq!((again, rows), (machine, vec![row.clone(), row]));
-        assert_eq!(read("{}\n{}\nx").unwrap_err().line, 3);
+        assert_eq!(read::<Row>("{}\n{}\nx").unwrap_err().line, 3);
     }
 }

@@ -52,6 +52,20 @@ pub enum TracerKind {
     Photon,
 }
 
+impl TracerKind {
+    /// Its word in the language.
+    pub fn word(self) -> &'static str {
+        match self {
+            TracerKind::Raycast => "raycast",
+            TracerKind::Whitted => "whitted",
+            TracerKind::MonteCarlo => "montecarlo",
+            TracerKind::Path => "path",
+            TracerKind::Irradiance => "irradiance",
+            TracerKind::Photon => "photon",
+        }
+    }
+}
+
 /// The kinds of random numbers by name.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum SamplerKind {
@@ -62,6 +76,17 @@ pub enum SamplerKind {
     Stratified,
     /// Each by itself.
     Independent,
+}
+
+impl SamplerKind {
+    /// Its word in the language.
+    pub fn word(self) -> &'static str {
+        match self {
+            SamplerKind::Sobol => "sobol",
+            SamplerKind::Stratified => "stratified",
+            SamplerKind::Independent => "independent",
+        }
+    }
 }
 
 /// The accelerators by name.
@@ -76,6 +101,17 @@ pub enum Accelerator {
     None,
 }
 
+impl Accelerator {
+    /// Its word in the language.
+    pub fn word(self) -> &'static str {
+        match self {
+            Accelerator::Bvh => "bvh",
+            Accelerator::KdTree => "kdtree",
+            Accelerator::None => "none",
+        }
+    }
+}
+
 /// From linear radiance to 0 … 1 before sRGB.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ToneMap {
@@ -86,4 +122,15 @@ pub enum ToneMap {
     Reinhard,
     /// Narkowicz's fit of the ACES curve.
     Aces,
+}
+
+impl ToneMap {
+    /// Its word in the language.
+    pub fn word(self) -> &'static str {
+        match self {
+            ToneMap::None => "none",
+            ToneMap::Reinhard => "reinhard",
+            ToneMap::Aces => "aces",
+        }
+    }
 }

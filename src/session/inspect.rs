@@ -8,10 +8,9 @@ use crate::geometry::path::Path;
 use crate::geometry::skin::Blend;
 use crate::math::{Affine, Point};
 use crate::scene::{
-    Accelerator, Along, Camera, Fresnel, Layers, Light, LightSource, Lobe, Material, MeshSource, Node,
-    Object, PatchMethod, PatchNet, PatchSource, PatternKind, Projection, Radius, RenderSettings, Rgb,
-    SampleInput, SamplerKind, Scene, Shape, Skin, SkinSurface, Sky, Surface, Texture, ToneMap, TracerKind,
-    Weights,
+    Along, Camera, Fresnel, Layers, Light, LightSource, Lobe, Material, MeshSource, Node, Object,
+    PatchMethod, PatchNet, PatchSource, PatternKind, Projection, Radius, RenderSettings, Rgb, SampleInput,
+    Scene, Shape, Skin, SkinSurface, Sky, Surface, Texture, Weights,
 };
 use glam::DVec3;
 use serde_json::{Map, Value as Json, json};
@@ -148,14 +147,14 @@ fn render(settings: &RenderSettings) -> Entry {
     } = settings;
     let given = [
         ("size", size.map(|s| json!(s))),
-        ("tracer", tracer.map(|t| json!(tracer_word(t)))),
+        ("tracer", tracer.map(|t| json!(t.word()))),
         ("samples", samples.map(|n| json!(n))),
         ("depth", depth.map(|n| json!(n))),
         ("seed", seed.map(|n| json!(n))),
-        ("sampler", sampler.map(|s| json!(sampler_word(s)))),
-        ("accelerator", accelerator.map(|a| json!(accelerator_word(a)))),
+        ("sampler", sampler.map(|s| json!(s.word()))),
+        ("accelerator", accelerator.map(|a| json!(a.word()))),
         ("exposure", exposure.map(|x| json!(x))),
-        ("tonemap", tonemap.map(|t| json!(tonemap_word(t)))),
+        ("tonemap", tonemap.map(|t| json!(t.word()))),
         ("background", background.map(vector)),
         ("frames", frames.map(|n| json!(n))),
         ("fps", fps.map(|x| json!(x))),
@@ -485,44 +484,6 @@ fn projection(projection: Projection) -> &'static str {
         Projection::Orthographic => "orthographic",
         Projection::Fisheye => "fisheye",
         Projection::Panorama => "panorama",
-    }
-}
-
-/// The tracer's word in the language.
-pub fn tracer_word(kind: TracerKind) -> &'static str {
-    match kind {
-        TracerKind::Raycast => "raycast",
-        TracerKind::Whitted => "whitted",
-        TracerKind::MonteCarlo => "montecarlo",
-        TracerKind::Path => "path",
-        TracerKind::Irradiance => "irradiance",
-        TracerKind::Photon => "photon",
-    }
-}
-
-/// The sampler's word in the language.
-pub fn sampler_word(kind: SamplerKind) -> &'static str {
-    match kind {
-        SamplerKind::Sobol => "sobol",
-        SamplerKind::Stratified => "stratified",
-        SamplerKind::Independent => "independent",
-    }
-}
-
-/// The accelerator's word in the language.
-pub fn accelerator_word(kind: Accelerator) -> &'static str {
-    match kind {
-        Accelerator::Bvh => "bvh",
-        Accelerator::KdTree => "kdtree",
-        Accelerator::None => "none",
-    }
-}
-
-fn tonemap_word(kind: ToneMap) -> &'static str {
-    match kind {
-        ToneMap::None => "none",
-        ToneMap::Reinhard => "reinhard",
-        ToneMap::Aces => "aces",
     }
 }
 

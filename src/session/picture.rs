@@ -111,7 +111,7 @@ fn choose<'a>(scene: &'a Scene, label: Option<&str>) -> Result<Option<&'a Camera
 /// The tracer of the settings; the path tracer takes the place of one that is not built yet, so that there is a picture.
 fn tracer(world: &World, settings: &ResolvedSettings, found: &mut Vec<Diagnostic>) -> Box<dyn Tracer> {
     render::tracer(settings.tracer, world, settings).unwrap_or_else(|| {
-        let word = super::inspect::tracer_word(settings.tracer);
+        let word = settings.tracer.word();
         let message = format!("the tracer `{word}` is not built yet; `path` takes its place");
         found.push(Diagnostic::new(Code::NotBuilt, None, message));
         Box::new(Path::new(world, settings))
@@ -126,6 +126,12 @@ impl Prepared {
     /// Renders. Once `cancel` is true the film comes back as far as it is.
     pub fn render(&self, progress: &dyn Progress, cancel: &AtomicBool) -> Film {
         tiles::render(self.picture(), progress, cancel)
+    }
+
+    /// The same world by another tracer, with all that it makes beforehand. The camera and the tree stay as they are.
+    pub fn retraced(self, settings: ResolvedSettings) -> Prepared {
+        let tracer = tracer(&self.world, &settings, &mut Vec::new());
+        Prepared { settings, tracer, ..self }
     }
 
     /// A film on which nothing is yet.

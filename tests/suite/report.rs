@@ -1,9 +1,11 @@
 //! The report's case sets as tests: every default keeps its bar, and every variant that is known to fail does, so that the case sets
 //! are as hard as they claim. Errors and counts alone; no time is asked for.
 
+use crate::run::Folder;
 use ogee::math::hex::parse_hex_list;
 use ogee::report::page::render;
 use ogee::report::row::{Machine, Row};
+use ogee::report::tracers::TracerRow;
 use ogee::report::trial::{Only, Plan};
 use ogee::report::{measure, reproduce, store};
 use std::sync::OnceLock;
@@ -134,12 +136,61 @@ fn the_worst_inputs_give_their_errors_again() {
 fn results_alone_render_the_same_report() {
     let machine = Machine { mode: "quick".into(), ..Machine::default() };
     let mut again = Vec::new();
-    let mut files = store::write(&machine, rows());
+    let mut files = store::write(&machine, rows(), |row| &row.component);
     files.reverse();
     for file in files {
-        again.extend(store::read(&file.text).expect("what was written can be read").1);
+        again.extend(store::read::<Row>(&file.text).expect("what was written can be read").1);
     }
     store::sort(&mut again);
     let text = |rows: &[Row]| render(&machine, rows).into_iter().map(|page| page.text).collect::<Vec<_>>();
     assert!(text(&again) == text(rows()));
+}
+
+const SMALL_ROOM: &str = "render { size 200, 100 }
+camera { eye <0, 1, 5>  look_at <0, 0.6, 0> }
+light { area rect { center <0, 3, 0>  edges <1, 0, 0>, <0, 0, 1> }  radiance 12 }
+plane { normal y  material { diffuse 0.7 } }
+sphere { center <0, 0.7, 0>  radius 0.7  material { diffuse <0.8, 0.3, 0.2> } }
+";
+
+#[test]
+fn tracers_are_measured_on_a_scene_and_the_page_comes_again_from_the_results() {
+    let folder = Folder::with(&[("room.scene", SMALL_ROOM)]);
+    let ask = "bench tracers room.scene --size 12x6 --samples 16,4,4 --seeds 6 --variants path,path:independent,whitted --reference-samples 2048";
+    let run = folder.ogee(ask).expect(0);
+    assert!(run.stderr.ends_with("wrote report-tracers/index.md\n"), "{}", run.stderr);
+    let text = |name: &str| String::from_utf8(folder.read(&format!("report-tracers/{name}"))).unwrap();
+    let (_, rows) = store::read::<TracerRow>(&text("results/room.jsonl")).unwrap();
+    let names: Vec<(String, u32)> = rows.iter().map(|row| (row.name(), row.samples)).collect();
+    let all = ["path, sobol", "path, independent", "whitted, sobol"];
+    let expected = [4, 16].into_iter().flat_map(|n| all.map(|name| (name.to_owned(), n)));
+    assert_eq!(names, expected.collect::<Vec<_>>());
+    let whitted_is_dark = rows.iter().filter(|row| row.tracer == "whitted").all(|row| row.mean_off < -0.01);
+    assert!(whitted_is_dark, "what the floor sends the ball is not there: {rows:?}");
+    let noise = |i: usize| rows[i].noise();
+    assert!(noise(3) < noise(0) && noise(4) < noise(1) && noise(3) < noise(4), "{rows:?}");
+    let page = text("index.md");
+    std::fs::remove_file(folder.path().join("report-tracers/index.md")).unwrap();
+    folder.ogee("bench report report-tracers").expect(0);
+    assert!(text("index.md") == page && page.contains("12 × 6 pixels, 6 seeds"));
+}
+
+#[test]
+fn what_cannot_be_measured_of_tracers_is_told() {
+    let folder = Folder::with(&[("room.scene", SMALL_ROOM), ("no.scene", "sphere { radius }")]);
+    for (line, exit, words) in [
+        ("room.scene --variants paths", 2, "there is no tracer `paths`; there are raycast, whitted"),
+        ("room.scene --variants path:even", 2, "there is no sampler `even`; there are sobol"),
+        ("room.scene room.scene --reference a.exr", 2, "one `--reference` is of one scene"),
+        ("room.scene --reference a.exr", 3, "cannot read a.exr"),
+        ("no.scene", 1, "sphere"),
+        ("other.scene", 3, "cannot read other.scene"),
+        ("room.scene --seeds 1", 2, "1 is not in 2.."),
+    ] {
+        let run = folder.ogee(&format!("bench tracers {line}")).expect(exit);
+        assert!(run.stderr.contains(words), "{line}: {}", run.stderr);
+    }
+    folder.ogee("render room.scene --size 8x4 --samples 1 -o r.exr").expect(0);
+    let run = folder.ogee("bench tracers room.scene --reference r.exr").expect(1);
+    assert!(run.stderr.contains("it has 8 × 4 pixels and the pictures 128 × 64"), "{}", run.stderr);
 }

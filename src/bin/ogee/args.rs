@@ -1,11 +1,14 @@
 //! The command line as clap reads it. Help, completions and man pages come from here and from nowhere else.
 
+mod tracers;
+
 use clap::{Args, Parser, Subcommand, ValueEnum, ValueHint};
 use clap_complete::Shell;
 use ogee::scene::{Accelerator, SamplerKind, TracerKind};
 use std::ops::Range;
 use std::path::PathBuf;
 use std::str::FromStr;
+pub use tracers::Tracers;
 
 /// Ogee: write a scene as text, get a picture.
 #[derive(Parser)]
@@ -47,7 +50,7 @@ pub enum Command {
     Test(Test),
     /// Measure how far two pictures are apart
     Compare(Compare),
-    /// Measure kernels: speed against error
+    /// Measure kernels and tracers: speed against error
     #[command(subcommand)]
     Bench(Bench),
     /// Print the reference page of a block, a function or a constant; or the whole reference
@@ -65,6 +68,8 @@ pub enum Command {
 pub enum Bench {
     /// Measure every variant of every kernel, and write results and report; exits 1 where a default passes its bar
     Kernels(Kernels),
+    /// Render scenes by several tracers with several seeds, and write time against error, noise and bias apart
+    Tracers(Tracers),
     /// Write the report again from results alone
     Report(BenchReport),
     /// Ask one variant for one input that a report names

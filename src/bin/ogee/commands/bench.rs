@@ -1,4 +1,6 @@
-//! `ogee bench`: kernels measured, and the report of it.
+//! `ogee bench`: kernels and tracers measured, and the reports of it.
+
+mod tracers;
 
 use crate::args::{Bench, BenchReport, Kernels, Repro};
 use crate::place::Place;
@@ -8,14 +10,20 @@ use ogee::math::hex::parse_hex_list;
 use ogee::report::components::{COMPONENTS, SEED};
 use ogee::report::page::{Page, render, short};
 use ogee::report::row::{Machine, Row};
+use ogee::report::tracers::TracerRow;
 use ogee::report::trial::{Only, Plan};
-use ogee::report::{measure, reproduce, store};
-use std::path::Path;
+use ogee::report::{measure, reproduce, store, tracers as of_tracers};
+use serde::de::DeserializeOwned;
+use std::path::{Path, PathBuf};
+
+/// The mode of a report of tracers.
+const TRACERS: &str = "tracers";
 
 /// Measures, reports, or asks for one input.
 pub fn run(args: &Bench) -> Ended {
     match args {
         Bench::Kernels(args) => kernels(args),
+        Bench::Tracers(args) => tracers::run(args),
         Bench::Report(args) => report(args),
         Bench::Repro(args) => repro(args),
     }
@@ -34,7 +42,7 @@ fn kernels(args: &Kernels) -> Ended {
     let (mode, plan) = if args.full { ("full", Plan::full()) } else { ("quick", Plan::quick()) };
     let machine = machine(mode);
     let rows = measure(&plan, &args.only, |name| tell(format!("measuring {name}")));
-    write(&args.out, &store::write(&machine, &rows))?;
+    write(&args.out, &store::write(&machine, &rows, |row| &row.component))?;
     write(&args.out, &render(&machine, &rows))?;
     tell(format!("wrote {}", args.out.join("index.md").display()));
     let broken: Vec<&Row> = rows.iter().filter(|row| !row.within_bar()).collect();
@@ -56,7 +64,7 @@ fn write(folder: &Path, pages: &[Page]) -> Result<(), Failure> {
     pages.iter().try_for_each(|page| Place::try_at(&folder.join(&page.name))?.write(page.text.as_bytes()))
 }
 
-/// Renders what the result files of a folder hold, in the order of the components.
+/// Renders what the result files of a folder hold: kernels in the order of their components, or tracers by scene.
 fn report(args: &BenchReport) -> Ended {
     let results = args.folder.join("results");
     let cannot = |what: &Path, error: &std::io::Error| {
@@ -66,19 +74,38 @@ fn report(args: &BenchReport) -> Ended {
     let mut files: Vec<_> = entries.flatten().map(|entry| entry.path()).collect();
     files.retain(|path| path.extension().is_some_and(|extension| extension == "jsonl"));
     files.sort();
-    let (mut machine, mut rows) = (Machine::default(), Vec::new());
+    let mut texts = Vec::new();
     for file in files {
         let text = std::fs::read_to_string(&file).map_err(|error| cannot(&file, &error))?;
-        let (of_file, mut own) = store::read(&text).map_err(|error| Failure {
+        texts.push((file, text));
+    }
+    let is_of_tracers = match texts.first() {
+        Some(_) => rows_of::<serde_json::Value>(&texts[..1])?.0.mode == TRACERS,
+        None => false,
+    };
+    if is_of_tracers {
+        let (machine, rows) = rows_of::<TracerRow>(&texts)?;
+        write(&args.folder, &of_tracers::page::render(&machine, &rows))?;
+    } else {
+        let (machine, mut rows) = rows_of(&texts)?;
+        store::sort(&mut rows);
+        write(&args.folder, &render(&machine, &rows))?;
+    }
+    Ok(Exit::Done)
+}
+
+/// The machine of the last file, and the rows of all.
+fn rows_of<R: DeserializeOwned>(texts: &[(PathBuf, String)]) -> Result<(Machine, Vec<R>), Failure> {
+    let (mut machine, mut rows) = (Machine::default(), Vec::new());
+    for (file, text) in texts {
+        let (of_file, mut own) = store::read(text).map_err(|error| Failure {
             exit: Exit::Scene,
             message: format!("{}: {error}", file.display()),
         })?;
         machine = of_file;
         rows.append(&mut own);
     }
-    store::sort(&mut rows);
-    write(&args.folder, &render(&machine, &rows))?;
-    Ok(Exit::Done)
+    Ok((machine, rows))
 }
 
 fn repro(args: &Repro) -> Ended {

@@ -3,7 +3,6 @@
 use super::render::Stopwatch;
 use ogee::render::film::Film;
 use ogee::render::settings::ResolvedSettings;
-use ogee::session::inspect::{accelerator_word, sampler_word, tracer_word};
 use ogee::session::picture::Prepared;
 use std::path::Path;
 
@@ -96,12 +95,12 @@ pub fn json(
         "frame": frame,
         "size": settings.size,
         "crop": [settings.crop.x, settings.crop.y, settings.crop.width, settings.crop.height],
-        "tracer": tracer_word(settings.tracer),
-        "accelerator": accelerator_word(settings.accelerator),
+        "tracer": settings.tracer.word(),
+        "accelerator": settings.accelerator.word(),
         "samples": settings.samples,
         "depth": settings.depth,
         "seed": settings.seed,
-        "sampler": sampler_word(settings.sampler),
+        "sampler": settings.sampler.word(),
         "finished": film.share_finished(),
         "seconds": {
             "evaluate": seconds.evaluate.0,

@@ -9,7 +9,6 @@ use ogee::render::film::Film;
 use ogee::render::output::movie::{Movie, MovieFormat};
 use ogee::render::output::{self, Development, Format, Metadata};
 use ogee::render::settings::ResolvedSettings;
-use ogee::session::inspect::{sampler_word, tracer_word};
 use std::io::IsTerminal;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
@@ -178,11 +177,11 @@ fn metadata(settings: &ResolvedSettings, sources: &SourceMap) -> Metadata {
     Metadata {
         version: env!("CARGO_PKG_VERSION").to_owned(),
         scene: format!("{:016x}", hash(sources)),
-        tracer: tracer_word(settings.tracer).to_owned(),
+        tracer: settings.tracer.word().to_owned(),
         samples: settings.samples,
         depth: settings.depth,
         seed: settings.seed,
-        sampler: sampler_word(settings.sampler).to_owned(),
+        sampler: settings.sampler.word().to_owned(),
         size: settings.size,
     }
 }
