@@ -52,6 +52,12 @@ impl Factor {
         Factor { value, high, low }
     }
 
+    /// The two halves, of 26 bits each.
+    #[inline(always)]
+    pub fn halves(&self) -> (f64, f64) {
+        (self.high, self.low)
+    }
+
     /// `a · self` and what its rounding left out. Exact. Dekker; `a` is cut into 27 bits and 26, which takes half as long as by Veltkamp and
     /// leaves every product with the halves of this factor, 26 bits each, exact.
     #[inline(always)]

@@ -80,13 +80,9 @@ impl Method {
 
 /// The value from the nearer end; outside [0, 1] by the triangle.
 fn from_ends<P: Point>(points: &[Dd<P>; 4], t: f64) -> P {
-    if (0.0..=1.0).contains(&t) {
-        let value = FromEnds::new(points).at(Nearer::unit(t));
-        if value.is_finite() {
-            return value;
-        }
-    }
-    compensated(points, |_| Local::unit(t)).hi
+    let inside = (0.0..=1.0).contains(&t).then(|| Nearer::unit(t));
+    let value = inside.and_then(|place| FromEnds::new(points).at(place));
+    value.unwrap_or_else(|| compensated(points, |_| Local::unit(t)).hi)
 }
 
 /// Monomial coefficients, made once for many evaluations by Horner's rule.

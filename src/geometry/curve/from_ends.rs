@@ -2,6 +2,8 @@
 //! de Casteljau's triangle, and exact at both ends like it. Compensated Horner: Graillat, Langlois & Louvet (2009). Knows nothing of
 //! chains of pieces.
 
+mod wide;
+
 use crate::math::Point;
 use crate::math::dd::{Dd, Factor, two_sum};
 use crate::math::point::Lanes;
@@ -43,12 +45,11 @@ impl<P: Point> FromEnds<P> {
         }
     }
 
-    /// The value inside the piece: error below u|value| + 40 u² Σ |cᵢ| sⁱ, s the distance. Not finite where a coefficient is too large to
+    /// The value inside the piece: error below u|value| + 40 u² Σ |cᵢ| sⁱ, s the distance. None where a coefficient is too large to
     /// split.
-    #[inline]
-    pub fn at(&self, place: Nearer) -> P {
-        let lanes = nested(if place.from_start { &self.start } else { &self.end }, place.distance);
-        P::from_coordinates(|axis| lanes.lane(axis))
+    #[inline(always)]
+    pub fn at(&self, place: Nearer) -> Option<P> {
+        wide::nested(if place.from_start { &self.start } else { &self.end }, place.distance)
     }
 }
 

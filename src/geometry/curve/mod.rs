@@ -147,7 +147,8 @@ impl<P: Point> Curve<P> {
     #[inline(always)]
     pub(crate) fn piece_at(&self, t: f64) -> &Piece<P> {
         // Where the breakpoints are as far apart as each other, this is it.
-        let guess = &self.pieces[(((t - self.domain.0) * self.per_unit) as usize).min(self.pieces.len() - 1)];
+        let guess = ((t - self.domain.0) * self.per_unit) as u32 as usize;
+        let guess = &self.pieces[guess.min(self.pieces.len() - 1)];
         if t >= guess.start() && t < guess.end() {
             return guess;
         }
@@ -167,11 +168,11 @@ impl<P: Point> Curve<P> {
         Ok(self.piece_at(t).at(t))
     }
 
-    /// The same inside the domain; none outside it.
+    /// The same by the quick way; none outside the domain, and where numbers are too large for it.
     #[inline(always)]
     pub fn at_inside(&self, t: f64) -> Option<P> {
         let (start, end) = self.domain;
-        (t >= start && t <= end).then(|| self.piece_at(t).at_inside(t))
+        if t >= start && t <= end { self.piece_at(t).at_inside(t) } else { None }
     }
 
     /// γ(t) by another method than the default.

@@ -79,14 +79,14 @@ impl<P: Point> Piece<P> {
     /// γ(t), for any real t: outside the piece's interval the cubic goes on.
     #[inline]
     pub fn at(&self, t: f64) -> P {
-        if t >= self.start && t <= self.end { self.at_inside(t) } else { self.at_by_triangle(t) }
+        let inside = (t >= self.start && t <= self.end).then(|| self.at_inside(t)).flatten();
+        inside.unwrap_or_else(|| self.at_by_triangle(t))
     }
 
-    /// The same for t in the piece's interval.
-    #[inline]
-    pub(crate) fn at_inside(&self, t: f64) -> P {
-        let value = self.from_ends.at(self.nearer(t));
-        if value.is_finite() { value } else { self.at_by_triangle(t) }
+    /// The same for t in the piece's interval; none where the numbers are too large for the quick way.
+    #[inline(always)]
+    pub(crate) fn at_inside(&self, t: f64) -> Option<P> {
+        self.from_ends.at(self.nearer(t))
     }
 
     /// The same by de Casteljau's triangle, which serves any t.

@@ -1,6 +1,7 @@
 //! The test of a node's children, and the traversal around it, compiled for what the processor has: only how many children one
 //! instruction tests differs, not one operation or its order, so that every picture is the same on all of them. Knows nothing of
-//! what is traversed. The one room of the tree with unsafe code: there is no other way to such instructions.
+//! what is traversed. One of the two rooms of the tree with unsafe code: there is no other
+//! way to such instructions.
 
 use super::{Met, Narrow, Node, WIDTH};
 use std::ops::Range;
