@@ -1,6 +1,5 @@
 //! Items: they bind names, produce properties and nodes, and decide what runs next.
 
-use super::plain::Plain;
 use super::slots::{Captured, Closure, Slot};
 use super::{Around, Evaluator, Flow, Produced, Said};
 use crate::diag::{Code, Diagnostic, Span};
@@ -103,7 +102,8 @@ impl<'p> Evaluator<'p> {
         true
     }
 
-    fn slot(&mut self, access: Access) -> &mut Slot {
+    #[inline(always)]
+    pub(super) fn slot(&mut self, access: Access) -> &mut Slot {
         match access {
             Access::Local(slot) => &mut self.stack[self.base + slot as usize],
             Access::Global(slot) => &mut self.standing.globals[slot as usize],
@@ -124,36 +124,6 @@ impl<'p> Evaluator<'p> {
         let value = self.expr(value);
         let outcome = value.as_ref().map(|_| ()).map_err(|e| *e);
         self.slot(access).declare(value.map_or(Slot::Poison, Slot::Value));
-        outcome
-    }
-
-    fn assign(&mut self, access: Access, value: &'p Expr) -> Outcome<()> {
-        let value = self.plain_in_place_of(access, value);
-        if let Access::Local(_) | Access::Global(_) = access {
-            let vector = self.vector;
-            match (value, self.slot(access)) {
-                (Plain::Number(x), Slot::Value(Value::Number(old))) => {
-                    *old = x;
-                    return Ok(());
-                }
-                (Plain::Vector, Slot::Value(Value::Vector3(old))) => {
-                    *old = vector;
-                    return Ok(());
-                }
-                _ => {}
-            }
-        }
-        let value = self.outcome_of(value);
-        let outcome = value.as_ref().map(|_| ()).map_err(|e| *e);
-        let value = value.map_or(Slot::Poison, Slot::Value);
-        match access {
-            Access::Captured(slot) => {
-                if let Some(Slot::Shared(cell)) = self.captured.as_ref().map(|c| &c[slot as usize]) {
-                    self.standing.assign_shared(cell, value);
-                }
-            }
-            Access::Local(_) | Access::Global(_) | Access::Sibling(_) => self.slot(access).assign(value),
-        }
         outcome
     }
 

@@ -20,6 +20,7 @@ mod plain;
 mod report;
 pub mod slots;
 mod undo;
+mod update;
 
 pub(super) use equal::equal;
 pub(super) use fields::{components, letters, place, swizzle};

@@ -159,7 +159,7 @@ impl<'p> Evaluator<'p> {
     }
 
     /// A call of a function of two numbers; the second argument is not evaluated where the first failed.
-    #[inline]
+    #[inline(always)]
     pub(super) fn number_of_two(
         &mut self,
         call: &'p CallBuiltin,

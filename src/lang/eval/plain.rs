@@ -117,7 +117,7 @@ impl<'p> Evaluator<'p> {
 
     /// `a op b`; a number beside a vector stands for every component.
     #[inline(never)]
-    fn plain_joined(&mut self, op: Arithmetic, a: Operand, b: Plain, span: Span) -> Plain {
+    pub(super) fn plain_joined(&mut self, op: Arithmetic, a: Operand, b: Plain, span: Span) -> Plain {
         let splat = DVec3::splat;
         let joined = match (a, b) {
             (Operand::Number(x), Plain::Number(y)) => Operand::Number(operators::number(op, x, y)),
@@ -211,7 +211,7 @@ impl<'p> Evaluator<'p> {
 
 /// What stands on the left while the right is computed.
 #[derive(Clone, Copy, Debug)]
-enum Operand {
+pub(super) enum Operand {
     Number(f64),
     Vector(DVec3),
 }

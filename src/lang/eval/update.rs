@@ -1,0 +1,92 @@
+//! A variable that takes another value, and the commonest way in which a vector does: itself and something more, `s = s + …`, which is
+//! computed where the variable stands instead of being carried there and back.
+
+use super::Evaluator;
+use super::operators;
+use super::plain::{Operand, Plain};
+use super::slots::Slot;
+use crate::lang::resolve::program::{Access, Arithmetic, Expr, ExprKind};
+use crate::lang::table::Outcome;
+use crate::lang::value::Value;
+use glam::DVec3;
+
+impl<'p> Evaluator<'p> {
+    /// Gives a variable the value of an expression; poison where that failed.
+    pub(super) fn assign(&mut self, access: Access, value: &'p Expr) -> Outcome<()> {
+        if let ExprKind::Arithmetic(op, operands) = &value.kind
+            && let ExprKind::Name(left) = operands.0.kind
+            && left == access
+            && let Access::Local(_) | Access::Global(_) = access
+            && let Some(Slot::Value(Value::Vector3(u))) = self.slot_of(access)
+        {
+            return self.update(access, *op, *u, &operands.1, value);
+        }
+        let plain = self.plain_in_place_of(access, value);
+        self.assign_plain(access, plain)
+    }
+
+    /// `variable = whole`, where whole is `u op right` and u what the variable holds.
+    #[inline(always)]
+    fn update(
+        &mut self,
+        access: Access,
+        op: Arithmetic,
+        u: DVec3,
+        right: &'p Expr,
+        whole: &'p Expr,
+    ) -> Outcome<()> {
+        let b = self.plain(right);
+        if let Plain::Vector = b {
+            let joined = operators::vector3(op, u, self.vector);
+            if is_finite(joined)
+                && let Slot::Value(Value::Vector3(old)) = self.slot(access)
+            {
+                // One by one: a copy of all three at once would wait until each has been stored where it was made.
+                (old.x, old.y, old.z) = (joined.x, joined.y, joined.z);
+                return Ok(());
+            }
+        }
+        let plain = self.plain_joined(op, Operand::Vector(u), b, whole.span);
+        self.assign_plain(access, plain)
+    }
+
+    fn assign_plain(&mut self, access: Access, value: Plain) -> Outcome<()> {
+        if let Access::Local(_) | Access::Global(_) = access {
+            let vector = self.vector;
+            match (value, self.slot(access)) {
+                (Plain::Number(x), Slot::Value(Value::Number(old))) => {
+                    *old = x;
+                    return Ok(());
+                }
+                (Plain::Vector, Slot::Value(Value::Vector3(old))) => {
+                    *old = vector;
+                    return Ok(());
+                }
+                _ => {}
+            }
+        }
+        self.assign_any(access, value)
+    }
+
+    #[inline(never)]
+    fn assign_any(&mut self, access: Access, value: Plain) -> Outcome<()> {
+        let value = self.outcome_of(value);
+        let outcome = value.as_ref().map(|_| ()).map_err(|e| *e);
+        let value = value.map_or(Slot::Poison, Slot::Value);
+        match access {
+            Access::Captured(slot) => {
+                if let Some(Slot::Shared(cell)) = self.captured.as_ref().map(|c| &c[slot as usize]) {
+                    self.standing.assign_shared(cell, value);
+                }
+            }
+            Access::Local(_) | Access::Global(_) | Access::Sibling(_) => self.slot(access).assign(value),
+        }
+        outcome
+    }
+}
+
+/// Whether no component is infinite or NaN: 0 times those is NaN.
+#[inline(always)]
+fn is_finite(v: DVec3) -> bool {
+    v.dot(DVec3::ZERO) == 0.0
+}
