@@ -13,6 +13,7 @@ pub trait Tracer: Sync {
 pub mod camera;
 pub mod compare;
 pub mod film;
+mod irradiance;
 mod medium;
 pub mod output;
 pub mod path;
@@ -22,18 +23,19 @@ pub mod settings;
 pub mod tiles;
 pub mod whitted;
 
-/// The tracer of a name, ready for a world. None for those that are not built yet.
+/// The tracer of a name, ready for a world as a camera sees it.
 pub fn tracer(
     kind: TracerKind,
     world: &World,
+    view: &camera::View,
     settings: &settings::ResolvedSettings,
-) -> Option<Box<dyn Tracer>> {
+) -> Box<dyn Tracer> {
     match kind {
-        TracerKind::Raycast => Some(Box::new(whitted::Whitted::raycast(world, settings))),
-        TracerKind::Whitted => Some(Box::new(whitted::Whitted::new(world, settings))),
-        TracerKind::Path => Some(Box::new(path::Path::new(world, settings))),
-        TracerKind::MonteCarlo => Some(Box::new(path::Path::branching(world, settings))),
-        TracerKind::Photon => Some(Box::new(path::Path::with_photons(world, settings))),
-        TracerKind::Irradiance => None,
+        TracerKind::Raycast => Box::new(whitted::Whitted::raycast(world, settings)),
+        TracerKind::Whitted => Box::new(whitted::Whitted::new(world, settings)),
+        TracerKind::Path => Box::new(path::Path::new(world, settings)),
+        TracerKind::MonteCarlo => Box::new(path::Path::branching(world, settings)),
+        TracerKind::Irradiance => Box::new(path::Path::with_records(world, view, settings)),
+        TracerKind::Photon => Box::new(path::Path::with_photons(world, settings)),
     }
 }

@@ -1,7 +1,7 @@
 //! Path tracing (Kajiya, *The Rendering Equation*, 1986): one path from the camera for each sample, which goes on wherever
 //! light may have come from, and at every surface asks one light directly. `montecarlo` does the same with a path that
 //! branches once, at the first surface that spreads light: what the camera ray cost is shared by all branches. `photon` ends it
-//! where photons tell the rest.
+//! where photons tell the rest, `irradiance` where records do.
 //!
 //! What a light sends is found in two ways, by asking it and by meeting it; each counts by its share of the two densities
 //! (the balance heuristic of Veach & Guibas, 1995), so that neither is counted twice. Lights without extent are only asked;
@@ -11,7 +11,11 @@
 //! Glass casts a shadow here, and what it gathers is found by the paths that meet a light through it: light from `point`,
 //! `spot` and `sun` through smooth glass cannot be found so, and is missing.
 
+mod gather;
+
 use super::Tracer;
+use super::camera::View;
+use super::irradiance::Records;
 use super::medium::Inside;
 use super::photon::Maps;
 use super::sampler::Sampler;
@@ -21,9 +25,11 @@ use crate::world::bsdf::{Bounce, Bsdf, Odds};
 use crate::world::light::{Ball, Choice, LightEnd, Lights};
 use crate::world::texture::Sampled;
 use crate::world::{Hit, Ray, RayKind, SurfacePoint, World};
+pub(super) use gather::Matt;
 use glam::{DVec2, DVec3};
+use std::f64::consts::PI;
 
-/// The tracers `path`, `montecarlo` and `photon`.
+/// The tracers `path`, `montecarlo`, `irradiance` and `photon`.
 pub struct Path {
     lights: Lights,
     choice: Choice,
@@ -34,6 +40,9 @@ pub struct Path {
     /// How many ways on are taken from the first surface that spreads light.
     branches: u32,
     photons: Option<Maps>,
+    records: Option<Records>,
+    /// True where a ray may meet what shines.
+    has_shine: bool,
 }
 
 /// Branches of `montecarlo`. A power of two, so that the points of a surface's ways are even.
@@ -54,10 +63,10 @@ struct Last {
     density: f64,
 }
 
-/// How far a path is that photons may end.
+/// How far a path is that photons may end, or that gathers for a record.
 #[derive(Clone, Copy, PartialEq)]
 enum Stage {
-    /// There are no photons.
+    /// Nothing is told of it elsewhere.
     Whole,
     /// All surfaces so far were mirrors and glass.
     Seen,
@@ -65,16 +74,32 @@ enum Stage {
     Gathers,
     /// It left a matt surface and mirrors after it: what it meets by itself is among the caustics there.
     Covered,
+    /// It left the place of a record, and nothing but mirrors and glass since: what it meets by itself is not among the record.
+    Gathered,
 }
 
 impl Stage {
     fn after(self, is_mirror: bool) -> Stage {
         match (self, is_mirror) {
-            (Stage::Whole, _) => Stage::Whole,
+            (Stage::Whole | Stage::Gathered, _) => self,
             (_, false) => Stage::Gathers,
             (Stage::Seen, true) => Stage::Seen,
             (Stage::Gathers | Stage::Covered, true) => Stage::Covered,
         }
+    }
+
+    /// At a surface that spreads light.
+    fn at_base(self) -> Stage {
+        match self {
+            Stage::Covered => Stage::Gathers,
+            Stage::Gathered => Stage::Whole,
+            Stage::Whole | Stage::Seen | Stage::Gathers => self,
+        }
+    }
+
+    /// True where light of lamps, met or asked, is counted elsewhere.
+    fn is_covered(self) -> bool {
+        matches!(self, Stage::Covered | Stage::Gathered)
     }
 }
 
@@ -93,6 +118,10 @@ struct Walk<'a> {
     /// True while the camera sees along it, by mirrors and glass.
     seen: bool,
     stage: Stage,
+    /// What is left of the weight at the next surface that spreads light: records told the rest.
+    kept: Rgb,
+    /// Of its first segment, once it has met something.
+    first_length: f64,
     sum: Rgb,
     sampler: &'a mut Sampler,
 }
@@ -103,8 +132,12 @@ impl Path {
         let lights = Lights::new(world);
         let choice = Choice::new(&lights.lights, Ball::around(world).radius);
         let has_holes = world.materials().iter().any(|m| !m.layers().opacity.is(Rgb::ONE));
+        let emits = |m: &std::sync::Arc<crate::scene::Material>| !m.layers().emit.is(Rgb::ZERO);
+        let has_shine =
+            lights.lights.iter().any(|light| !light.is_delta()) || world.materials().iter().any(emits);
         let ResolvedSettings { depth, background, .. } = *settings;
-        Path { lights, choice, depth, background, has_holes, branches: 1, photons: None }
+        let (photons, records) = (None, None);
+        Path { lights, choice, depth, background, has_holes, branches: 1, photons, records, has_shine }
     }
 
     /// Paths that branch once.
@@ -117,23 +150,19 @@ impl Path {
         let path = Path::new(world, settings);
         Path { photons: Some(Maps::new(world, &path.lights, &path.choice, settings)), ..path }
     }
+
+    /// Paths that end where records of irradiance tell the rest.
+    pub fn with_records(world: &World, view: &View, settings: &ResolvedSettings) -> Path {
+        let path = Path::new(world, settings);
+        Path { records: Some(Records::new(world, &path, view, settings)), ..path }
+    }
 }
 
 impl Tracer for Path {
     fn radiance(&self, world: &World, ray: Ray, sampler: &mut Sampler) -> Rgb {
         sampler.rays.camera += 1;
-        let mut walk = Walk {
-            ray,
-            weight: Rgb::ONE,
-            segment: 1,
-            inside: Inside::NOTHING,
-            branches: self.branches,
-            last: None,
-            seen: true,
-            stage: if self.photons.is_some() { Stage::Seen } else { Stage::Whole },
-            sum: Rgb::ZERO,
-            sampler,
-        };
+        let stage = if self.photons.is_some() { Stage::Seen } else { Stage::Whole };
+        let mut walk = Walk { branches: self.branches, stage, ..Walk::from_camera(ray, sampler) };
         if let Err(fault) = self.trace(world, &mut walk) {
             walk.sampler.undefined = Some(fault);
         }
@@ -151,23 +180,22 @@ impl Path {
     /// Takes a path to the end of its ray and aims it anew. False where it ends.
     fn follow(&self, world: &World, walk: &mut Walk<'_>) -> Sampled<bool> {
         let Some(hit) = world.closest(&walk.ray) else {
-            if walk.stage == Stage::Covered {
-                return Ok(false);
+            if !walk.stage.is_covered() {
+                walk.sum += walk.weight * walk.inside.kept(f64::INFINITY) * self.beyond(walk);
             }
-            walk.sum += walk.weight * walk.inside.kept(f64::INFINITY) * self.beyond(walk);
             return Ok(false);
         };
+        walk.note_length(hit.t);
         let bsdf = Bsdf::at(world, &hit, &walk.ray)?;
         walk.weight *= walk.inside.left(&bsdf, hit.t);
-        if bsdf.opacity < 1.0 && walk.sampler.next_1d() >= bsdf.opacity {
-            walk.ray = hit.spawn(walk.ray.direction, walk.ray.kind);
+        if walk.slips(&hit, &bsdf) {
             return Ok(true);
         }
         let emitted = bsdf.emitted(world, &hit);
-        if emitted != Rgb::ZERO && walk.stage != Stage::Covered {
+        if emitted != Rgb::ZERO && !walk.stage.is_covered() {
             walk.sum += walk.weight * emitted * self.share_of_meeting(world, &hit, walk);
         }
-        if walk.segment >= self.depth {
+        if walk.segment >= self.depth || !walk.arrives(&bsdf) {
             return Ok(false);
         }
         match &self.photons {
@@ -181,20 +209,31 @@ impl Path {
         if !bsdf.has_base() {
             return false;
         }
-        if matches!(walk.stage, Stage::Gathers | Stage::Covered)
+        if walk.stage == Stage::Gathers
             && let Some(light) = maps.all(hit, bsdf, walk.segment)
         {
             walk.sum += walk.weight * light;
             return true;
         }
         walk.sum += walk.weight * maps.caustic(hit, bsdf, walk.segment);
-        walk.stage = if walk.stage == Stage::Covered { Stage::Gathers } else { walk.stage };
         false
+    }
+
+    /// Adds what records tell at a surface: what its matt part sends on of light from other matt surfaces. False where none holds.
+    fn is_known(&self, world: &World, hit: &Hit<'_>, bsdf: &Bsdf, walk: &mut Walk<'_>) -> bool {
+        let Some(records) = &self.records else { return false };
+        let matt = bsdf.matt();
+        if matt == Rgb::ZERO {
+            return false;
+        }
+        let told = records.told(world, hit, bsdf, walk.segment);
+        walk.sum += walk.weight * matt * told.unwrap_or(Rgb::ZERO) / PI;
+        told.is_some()
     }
 
     /// Asks lights and leaves the surface, along all ways of the branches where it is the one that branches.
     fn go_on(&self, world: &World, hit: &Hit<'_>, bsdf: &Bsdf, walk: &mut Walk<'_>) -> Sampled<bool> {
-        let spreads = bsdf.has_lobes() && walk.stage != Stage::Covered;
+        let spreads = bsdf.has_lobes() && !walk.stage.is_covered();
         let n = if spreads { std::mem::replace(&mut walk.branches, 1) } else { 1 };
         let (which, odds) = (walk.sampler.next_set(), bsdf.odds());
         if spreads && !self.lights.lights.is_empty() {
@@ -208,7 +247,12 @@ impl Path {
         let ways = walk.sampler.next_set();
         let way = |i| bsdf.bounce(odds, which.point(i, n).x, ways.point(i, n));
         if n == 1 {
-            return Ok(way(0).is_some_and(|bounce| walk.leave(hit, bsdf, &bounce)));
+            let Some(bounce) = way(0) else { return Ok(false) };
+            if self.is_known(world, hit, bsdf, walk) {
+                walk.kept = bounce.density.map_or(Rgb::ONE, |_| bsdf.beside_matt(bounce.direction));
+            }
+            let goes_on = self.has_shine || walk.kept != Rgb::ZERO;
+            return Ok(goes_on && walk.leave(hit, bsdf, &bounce));
         }
         for bounce in (0..n).filter_map(way) {
             let mut branch = walk.branch();
@@ -299,10 +343,53 @@ pub(super) fn survival(carried: f64, segment: u32) -> f64 {
     carried.min(if segment < LONG { 1.0 } else { MOST_SURVIVAL })
 }
 
+impl<'a> Walk<'a> {
+    fn from_camera(ray: Ray, sampler: &'a mut Sampler) -> Walk<'a> {
+        Walk {
+            ray,
+            weight: Rgb::ONE,
+            segment: 1,
+            inside: Inside::NOTHING,
+            branches: 1,
+            last: None,
+            seen: true,
+            stage: Stage::Whole,
+            kept: Rgb::ONE,
+            first_length: f64::INFINITY,
+            sum: Rgb::ZERO,
+            sampler,
+        }
+    }
+}
+
 impl Walk<'_> {
     /// A path of its own from here on, of which nothing is summed yet.
     fn branch(&mut self) -> Walk<'_> {
         Walk { sum: Rgb::ZERO, sampler: &mut *self.sampler, ..*self }
+    }
+
+    fn note_length(&mut self, length: f64) {
+        if self.first_length == f64::INFINITY {
+            self.first_length = length;
+        }
+    }
+
+    /// Goes straight on where the surface is there only in part, by chance. False where it is met.
+    fn slips(&mut self, hit: &Hit<'_>, bsdf: &Bsdf) -> bool {
+        let slips = bsdf.opacity < 1.0 && self.sampler.next_1d() >= bsdf.opacity;
+        if slips {
+            self.ray = hit.spawn(self.ray.direction, self.ray.kind);
+        }
+        slips
+    }
+
+    /// Comes to a surface with what is not told elsewhere. False where that is nothing.
+    fn arrives(&mut self, bsdf: &Bsdf) -> bool {
+        if bsdf.has_base() {
+            self.stage = self.stage.at_base();
+            self.weight *= std::mem::replace(&mut self.kept, Rgb::ONE);
+        }
+        self.weight != Rgb::ZERO
     }
 
     /// Leaves a surface. False where the path ends by chance.

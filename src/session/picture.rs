@@ -6,7 +6,6 @@ use crate::diag::{Code, Diagnostic};
 use crate::math::field::FaultKind;
 use crate::render::camera::View;
 use crate::render::film::{Fault, Film};
-use crate::render::path::Path;
 use crate::render::settings::{Crop, ResolvedSettings};
 use crate::render::tiles::{self, Picture, Progress};
 use crate::render::{self, Tracer};
@@ -87,7 +86,7 @@ pub fn prepare_frame(
     let options = WorldOptions { accelerator: settings.accelerator, footprint: Some(view.footprint()) };
     let (world, of_world) = World::with_assets(scene.nodes, &options, assets, kept);
     found.extend(of_world);
-    let tracer = tracer(&world, &settings, &mut found);
+    let tracer = render::tracer(settings.tracer, &world, &view, &settings);
     let has_errors = found.iter().any(|d| d.severity == crate::diag::Severity::Error);
     ((!has_errors).then_some(Prepared { world, settings, view, tracer }), found)
 }
@@ -108,16 +107,6 @@ fn choose<'a>(scene: &'a Scene, label: Option<&str>) -> Result<Option<&'a Camera
     })
 }
 
-/// The tracer of the settings; the path tracer takes the place of one that is not built yet, so that there is a picture.
-fn tracer(world: &World, settings: &ResolvedSettings, found: &mut Vec<Diagnostic>) -> Box<dyn Tracer> {
-    render::tracer(settings.tracer, world, settings).unwrap_or_else(|| {
-        let word = settings.tracer.word();
-        let message = format!("the tracer `{word}` is not built yet; `path` takes its place");
-        found.push(Diagnostic::new(Code::NotBuilt, None, message));
-        Box::new(Path::new(world, settings))
-    })
-}
-
 impl Prepared {
     fn picture(&self) -> Picture<'_> {
         Picture { world: &self.world, view: &self.view, tracer: &*self.tracer, settings: &self.settings }
@@ -130,7 +119,7 @@ impl Prepared {
 
     /// The same world by another tracer, with all that it makes beforehand. The camera and the tree stay as they are.
     pub fn retraced(self, settings: ResolvedSettings) -> Prepared {
-        let tracer = tracer(&self.world, &settings, &mut Vec::new());
+        let tracer = render::tracer(settings.tracer, &self.world, &self.view, &settings);
         Prepared { settings, tracer, ..self }
     }
 

@@ -464,7 +464,7 @@ fn a_copy_of_a_sky_keeps_its_picture_though_its_path_was_joined_already() {
 #[test]
 fn what_is_not_built_yet_is_a_warning_and_the_rest_is_made() {
     let text =
-        "camera { eye z*5  look_at <0, 0, 0> } light { sky 1 } render { tracer irradiance }\nsphere {}";
+        "camera { eye z*5  look_at <0, 0, 0> } light { sky 1 } render { accelerator kdtree }\nsphere {}";
     let evaluated = evaluate(text);
     assert!(evaluated.diagnostics.iter().all(|d| d.severity == Severity::Warning), "{}", told(&evaluated));
     assert!(!evaluated.diagnostics.is_empty());

@@ -9,6 +9,7 @@ mod explain;
 mod fuzz;
 mod golden;
 mod intersection;
+mod irradiance;
 mod language;
 mod layers;
 mod meshes;

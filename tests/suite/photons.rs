@@ -4,7 +4,6 @@ use crate::stage::*;
 use glam::DVec3;
 use ogee::render::sampler::Sampler;
 use ogee::render::settings::ResolvedSettings;
-use ogee::render::tracer;
 use ogee::scene::*;
 use ogee::world::{Ray, RayKind, World};
 use std::f64::consts::PI;
@@ -22,7 +21,7 @@ fn by(settings: impl Fn(u64) -> ResolvedSettings, world: &World, eye: DVec3, tar
     let (seeds, rays) = (3, 4096 / targets.len() as u32);
     let mut sum = 0.0;
     for seed in 0..seeds {
-        let tracer = tracer(TracerKind::Photon, world, &settings(seed)).expect("a tracer that is built");
+        let tracer = tracer_from(&settings(seed), world, eye, targets[0]);
         for (i, target) in targets.iter().enumerate() {
             let direction = (*target - eye).normalize();
             let ray = Ray { origin: eye, direction, t_max: f64::INFINITY, kind: RayKind::Camera };
@@ -126,7 +125,7 @@ fn photons_leave_the_same_picture_on_any_number_of_threads() {
     let of = |threads| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         pool.install(|| {
-            let tracer = tracer(TracerKind::Photon, &world, &photons(16, 1)).unwrap();
+            let tracer = tracer_from(&photons(16, 1), &world, 2.5 * X + 0.9 * Y, DVec3::ZERO);
             let see = |i: u32| {
                 let direction =
                     (DVec3::new(f64::from(i) / 64.0 - 0.5, 0.0, 0.1) - 0.9 * Y - 2.5 * X).normalize();

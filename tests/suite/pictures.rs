@@ -124,8 +124,13 @@ fn still(scale: f64, tracer: TracerKind) -> Film {
 }
 
 /// One tracer of each way to compute.
-const TRACERS: [TracerKind; 4] =
-    [TracerKind::Whitted, TracerKind::Path, TracerKind::MonteCarlo, TracerKind::Photon];
+const TRACERS: [TracerKind; 5] = [
+    TracerKind::Whitted,
+    TracerKind::Path,
+    TracerKind::MonteCarlo,
+    TracerKind::Irradiance,
+    TracerKind::Photon,
+];
 
 #[test]
 fn a_scene_of_any_scale_gives_the_same_bits() {
@@ -203,7 +208,7 @@ fn depends_on_nothing_but_the_scene(tracer: TracerKind) {
     let world = world(still_life(1.0));
     let mut settings = ResolvedSettings { samples: 4, tracer, ..settings([70, 50]) };
     let view = View::new(&still_camera(1.0), settings.size).unwrap();
-    let tracer = ogee::render::tracer(tracer, &world, &settings).unwrap();
+    let tracer = ogee::render::tracer(tracer, &world, &view, &settings);
     let mut expected = None;
     for threads in [Some(1), Some(2), Some(3), Some(8), None] {
         for tile in [7, 16, 32] {
@@ -318,7 +323,7 @@ fn a_cancelled_picture_comes_back_as_far_as_it_is() {
     let world = world(still_life(1.0));
     let settings = settings([128, 128]);
     let view = View::new(&still_camera(1.0), settings.size).unwrap();
-    let tracer = ogee::render::tracer(TracerKind::Whitted, &world, &settings).unwrap();
+    let tracer = ogee::render::tracer(TracerKind::Whitted, &world, &view, &settings);
     let cancel = AtomicBool::new(false);
     let progress = Impatient(&cancel, AtomicUsize::new(0));
     let picture = Picture { world: &world, view: &view, tracer: &*tracer, settings: &settings };

@@ -163,7 +163,8 @@ pub fn camera(eye: DVec3, look_at: DVec3, fov: f64) -> Camera {
 
 /// A picture by the settings' own tracer.
 pub fn picture(world: &World, camera: &Camera, settings: &ResolvedSettings) -> Film {
-    let tracer = tracer(settings.tracer, world, settings).expect("a tracer that is built");
+    let view = View::new(camera, settings.size).expect("a camera that sees");
+    let tracer = tracer(settings.tracer, world, &view, settings);
     picture_by(&*tracer, world, camera, settings)
 }
 
@@ -173,9 +174,20 @@ pub fn picture_by(tracer: &dyn Tracer, world: &World, camera: &Camera, settings:
     render(Picture { world, view: &view, tracer, settings }, &(), &AtomicBool::new(false))
 }
 
+/// The tracer of the settings for a camera that looks from one point to another.
+pub fn tracer_from(
+    settings: &ResolvedSettings,
+    world: &World,
+    origin: DVec3,
+    toward: DVec3,
+) -> Box<dyn Tracer> {
+    let view = View::new(&camera(origin, toward, 40.0), settings.size).expect("a camera that sees");
+    tracer(settings.tracer, world, &view, settings)
+}
+
 /// What whitted sees along one ray, the mean of some camera samples, and the sampler of the last.
 pub fn seen_by(settings: &ResolvedSettings, world: &World, origin: DVec3, toward: DVec3) -> (Rgb, Sampler) {
-    let tracer = tracer(settings.tracer, world, settings).expect("a tracer that is built");
+    let tracer = tracer_from(settings, world, origin, toward);
     let ray =
         Ray { origin, direction: (toward - origin).normalize(), t_max: f64::INFINITY, kind: RayKind::Camera };
     let mut sum = Rgb::ZERO;

@@ -162,8 +162,8 @@ pub static RENDER: Kind = Kind {
             "depth",
             COUNT,
             "8",
-            "most segments from the camera, the last of which may end on a light; path and montecarlo have no end by \
-             default",
+            "most segments from the camera, the last of which may end on a light; tracers that follow indirect light have \
+             no end by default",
         ),
         Property::new("seed", &[&[Type::Integer { min: 0 }]], "0", "of every random number of the picture"),
         Property::new(
@@ -211,7 +211,7 @@ fn render(ctx: &mut dyn Context, block: Block) -> Outcome {
     let count = |name: &str| block.integer(name).map(|n| n.min(u64::from(u32::MAX)) as u32);
     let settings = RenderSettings {
         size: size(ctx, &block)?,
-        tracer: tracer(ctx, &block),
+        tracer: block.word("tracer").map(tracer),
         samples: count("samples"),
         depth: count("depth"),
         seed: block.integer("seed"),
@@ -236,19 +236,15 @@ fn size(ctx: &mut dyn Context, block: &Block) -> Outcome<Option<[u32; 2]>> {
     Ok(Some([size[0] as u32, size[1] as u32]))
 }
 
-fn tracer(ctx: &mut dyn Context, block: &Block) -> Option<TracerKind> {
-    let kind = match block.word("tracer")? {
+fn tracer(word: &str) -> TracerKind {
+    match word {
         "raycast" => TracerKind::Raycast,
         "whitted" => TracerKind::Whitted,
         "montecarlo" => TracerKind::MonteCarlo,
         "path" => TracerKind::Path,
         "irradiance" => TracerKind::Irradiance,
         _ => TracerKind::Photon,
-    };
-    if kind == TracerKind::Irradiance {
-        not_built(ctx, block, "tracer", "path");
     }
-    Some(kind)
 }
 
 fn sampler(word: &str) -> SamplerKind {

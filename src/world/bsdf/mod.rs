@@ -281,9 +281,19 @@ impl Bsdf {
         }
     }
 
-    /// The cosine of `wi` to the shading normal, faded out toward the geometric horizon where the two normals differ.
+    /// What the matt part of the base sends on of light that comes evenly: π times its radiance per irradiance, whatever `wi` is.
+    pub fn matt(&self) -> Rgb {
+        match self.mirror {
+            Mirror::None => self.diffuse,
+            _ if self.diffuse == Rgb::ZERO => Rgb::ZERO,
+            _ => (Rgb::ONE - self.mirror_share(self.wo.dot(self.normal))) * self.diffuse,
+        }
+    }
+
+    /// The cosine of `wi` to the shading normal, faded out toward the geometric horizon where the two normals differ. 0 from below
+    /// either.
     #[inline]
-    fn lit(&self, wi: DVec3) -> f64 {
+    pub fn lit(&self, wi: DVec3) -> f64 {
         let (above, cosine) = (wi.dot(self.geometric), wi.dot(self.normal));
         if !(above > 0.0 && cosine > 0.0) {
             return 0.0;

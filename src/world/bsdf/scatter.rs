@@ -48,6 +48,19 @@ impl Bsdf {
         if wi.dot(self.geometric) > 0.0 { self.base(wi) + self.gloss(wi) } else { self.frosted(wi) }
     }
 
+    /// The share of what [`Bsdf::sent`] sends that is not by the matt part, for each colour.
+    pub fn beside_matt(&self, wi: DVec3) -> Rgb {
+        if wi.dot(self.geometric) <= 0.0 {
+            return Rgb::ONE;
+        }
+        if self.specular == Rgb::ZERO && !self.is_glossy() {
+            return Rgb::ZERO;
+        }
+        let (sent, matt) = (self.sent(wi), self.matt() * (self.lit(wi) / PI));
+        let share = |sent: f64, matt: f64| if sent > matt { (sent - matt) / sent } else { 0.0 };
+        Rgb::new(share(sent.x, matt.x), share(sent.y, matt.y), share(sent.z, matt.z))
+    }
+
     /// A way on: which lobe by these odds and `choice` in (0, 1), where in it by u in (0, 1)². None where nothing is sent on from there.
     pub fn bounce(&self, odds: Odds, choice: f64, u: DVec2) -> Option<Bounce> {
         let Odds { diffuse, specular, mirror, .. } = odds;

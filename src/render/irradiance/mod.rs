@@ -1,0 +1,129 @@
+//! Irradiance records as the tracer `irradiance` uses them (Ward, Rubinstein & Clear, *A Ray Tracing Solution for Diffuse
+//! Interreflection*, 1988): the light that matt surfaces send each other changes slowly, so it is found well at few places and
+//! interpolated between them.
+//!
+//! | light on its way to a matt surface that the camera sees | found by |
+//! |---|---|
+//! | straight from a lamp or the sky, or from one by mirrors and glass | the path, which asks and meets |
+//! | from other matt surfaces | records |
+//!
+//! Where no record holds, the path goes on as any other. All records are made before the picture, in an order that neither
+//! threads nor hashes reach.
+
+mod grid;
+mod hemisphere;
+mod prepass;
+mod record;
+
+use super::camera::View;
+use super::path::{Matt, Path};
+use super::settings::ResolvedSettings;
+use crate::scene::Rgb;
+use crate::world::bsdf::Bsdf;
+use crate::world::{Footprint, Hit, Ray, RayKind, World};
+use glam::DVec3;
+use grid::Grid;
+use record::{Place, Record};
+
+/// The records of a picture.
+pub struct Records {
+    records: Vec<Record>,
+    grid: Grid,
+    /// Errors of place up to this are borne.
+    error: f64,
+    footprint: Footprint,
+    has_end: bool,
+}
+
+/// The error that is borne at 64 samples a pixel.
+const ERROR: f64 = 0.3;
+
+/// A place with a record of less than this share of the error needs no other.
+const ENOUGH: f64 = 0.7;
+
+/// Pixels that a record holds for at least and at most, to each side.
+const PIXELS: [f64; 2] = [4.0, 64.0];
+
+/// The ray from one record's place to the next is lifted by this share of its length, so that the surface itself is not met.
+const LIFTED: f64 = 1.0 / 64.0;
+
+impl Records {
+    /// The records that a picture needs. Takes all threads there are, which leaves no trace in them.
+    pub fn new(world: &World, path: &Path, view: &View, settings: &ResolvedSettings) -> Records {
+        // Noise falls as the root of the samples, and the error of what is interpolated about as the square of its reach.
+        let error = ERROR * (64.0 / f64::from(settings.samples)).sqrt().sqrt();
+        let mut records = Records {
+            records: Vec::new(),
+            grid: Grid::default(),
+            error: error.clamp(ERROR / 3.0, ERROR * 1.5),
+            footprint: view.footprint(),
+            has_end: settings.depth < u32::MAX,
+        };
+        prepass::fill(&mut records, prepass::Prepass { world, path, view, settings });
+        records
+    }
+
+    /// The irradiance of a place by light from other matt surfaces. None where no record holds.
+    pub fn told(&self, world: &World, hit: &Hit<'_>, bsdf: &Bsdf, segment: u32) -> Option<Rgb> {
+        let at = self.place(hit.point, bsdf.normal, segment);
+        let (mut sum, mut weights) = (Rgb::ZERO, 0.0);
+        for record in self.near(&at) {
+            let weight = 1.0 - record.error(&at) / self.error;
+            if weight > 0.0 && self.sees(world, record, &at) {
+                sum += record.told(&at) * weight;
+                weights += weight;
+            }
+        }
+        (weights > 0.0).then(|| sum / weights)
+    }
+
+    fn place(&self, point: DVec3, normal: DVec3, segment: u32) -> Place {
+        Place { point, normal, segment: if self.has_end { segment } else { 0 } }
+    }
+
+    fn place_of(&self, matt: &Matt<'_>) -> Place {
+        self.place(matt.hit.point, matt.bsdf.normal, matt.segment)
+    }
+
+    fn near(&self, at: &Place) -> impl Iterator<Item = &Record> {
+        self.grid.near(at.point).map(|i| &self.records[i as usize])
+    }
+
+    /// True where a place needs no record of its own.
+    fn is_enough(&self, world: &World, at: &Place) -> bool {
+        let mut near = self.near(at);
+        near.any(|record| record.error(at) < ENOUGH * self.error && self.sees(world, record, at))
+    }
+
+    /// False where something stands between a record and a place that it might hold for.
+    fn sees(&self, world: &World, record: &Record, at: &Place) -> bool {
+        if !record.is_tight(self.error) {
+            return true;
+        }
+        let lift = LIFTED * record.place.point.distance(at.point);
+        let from = at.point + at.normal * lift;
+        let way = record.place.point + record.place.normal * lift - from;
+        let length = way.length();
+        let ray = Ray { origin: from, direction: way / length, t_max: length, kind: RayKind::Shadow };
+        length == 0.0 || !world.occluded(&ray)
+    }
+
+    /// The least and most radius of a record at a point, by the size of a pixel there.
+    fn limits(&self, point: DVec3) -> [f64; 2] {
+        let Footprint { eye, per_distance, constant } = self.footprint;
+        let pixel = constant + per_distance * eye.distance(point);
+        PIXELS.map(|pixels| pixels * pixel / self.error)
+    }
+
+    /// Enters a record, unless one that was entered before is enough at its place.
+    fn insert(&mut self, world: &World, mut record: Record) {
+        if self.is_enough(world, &record.place) {
+            return;
+        }
+        let near: Vec<u32> = self.grid.near(record.place.point).collect();
+        near.iter().for_each(|&i| record.clamp_to(&self.records[i as usize]));
+        near.iter().for_each(|&i| self.records[i as usize].clamp_to(&record));
+        self.grid.insert(self.records.len() as u32, record.place.point, self.error * record.radius());
+        self.records.push(record);
+    }
+}
