@@ -43,7 +43,8 @@ fn head(machine: &Machine) -> String {
          Every variant answers the same inputs. Errors are against double-double arithmetic, exact rationals or mpmath, as each component's source says; \
          what is missed or made up is counted and never averaged into an error. Times are medians of blocks taken in turn, ± the median \
          deviation; a ratio is the median of ratios taken block by block against the first variant, with its 95 % bootstrap interval. \
-         Nanoseconds are of this machine under its load; ratios and counts last longer.\n\n\
+         Nanoseconds are of this machine under its load; ratios and counts last longer. Calls are independent of each other, as those of a picture are; where \
+         a second time is given, each call waits for the answer before it (to its parameter 0 times that is added, which is in the time).\n\n\
          In the plots ★ is the default, the line joins what nothing beats in both cost and error, and a hollow mark has wrong answers, however small \
          the error of the rest.\n",
         mode = machine.mode,
@@ -142,18 +143,25 @@ fn table(index: &mut String, case: &str, rows: &[&Row]) {
     let work = rows.first().map_or("", |r| r.work_unit.as_str());
     let (work_head, work_rule) =
         if work.is_empty() { (String::new(), "") } else { (format!(" {work} |"), "---|") };
+    let chained = rows.iter().any(|r| r.ns_chain.is_some());
+    let (chain_head, chain_rule) = if chained { (" in a chain, ns |", "---|") } else { ("", "") };
     let _ = write!(
         index,
-        "\n### {}\n\n{n} inputs.\n\n| variant | ns | ratio (95 %) | largest error, {unit} | 99 % | mean | missed | spurious | not finite |{work_head}\n\
-         |---|---|---|---|---|---|---|---|---|{work_rule}\n",
+        "\n### {}\n\n{n} inputs.\n\n| variant | ns |{chain_head} ratio (95 %) | largest error, {unit} | 99 % | mean | missed | spurious | not finite |{work_head}\n\
+         |---|---|{chain_rule}---|---|---|---|---|---|---|{work_rule}\n",
         capital(case)
     );
     for row in rows {
         let star = if row.default { " ★" } else { "" };
         let work = if work.is_empty() { String::new() } else { format!(" {} |", short(row.work)) };
+        let chain = match row.ns_chain {
+            Some(ns) => format!(" {} |", short(ns)),
+            None if chained => " – |".into(),
+            None => String::new(),
+        };
         let _ = writeln!(
             index,
-            "| {}{star} | {} | {} | {} | {} | {} |{work}",
+            "| {}{star} | {} |{chain} {} | {} | {} | {} |{work}",
             row.variant,
             pair(row.ns_median, row.ns_mad),
             ratio(row),
@@ -312,6 +320,15 @@ mod tests {
         let text = &render(&Machine::default(), &[row("fast", 1.0, 1.0, false), broken])[0].text;
         assert!(text.contains("0 of 1 bars") && text.contains("Known failures:"), "{text}");
         assert!(text.contains("| cubic evaluation | slow | 2.00 … 2.00 |"), "{text}");
+    }
+
+    #[test]
+    fn chains_have_a_column_where_one_was_timed() {
+        let chained = Row { ns_chain: Some(7.0), ..row("slow", 2.0, 2.0, true) };
+        let text = &render(&Machine::default(), &[row("fast", 1.0, 1.0, false), chained])[0].text;
+        assert!(text.contains("| ns | in a chain, ns | ratio"), "{text}");
+        assert!(text.contains("| slow ★ | 2.00 ± 0 | 7.00 | 2.00"), "{text}");
+        assert!(text.contains("| fast | 1.00 ± 0 | – | 1.00"), "{text}");
     }
 
     #[test]

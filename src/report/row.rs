@@ -50,6 +50,9 @@ pub struct Row {
     pub ns_median: f64,
     /// Median absolute deviation of the blocks.
     pub ns_mad: f64,
+    /// Median nanoseconds of a call that waits for the answer of the one before it, where that was timed.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub ns_chain: Option<f64>,
     /// Time over that of the component's first variant, pair by pair: median and 95 % interval.
     pub ratio: f64,
     /// Lower and upper end of the ratio's interval (bootstrap).

@@ -130,6 +130,8 @@ pub struct Trial<'a, const N: usize, O> {
     judge: Judge<'a, N, O>,
     rows: Vec<Row>,
     timed: Vec<Timed<'a>>,
+    /// Runs whose calls wait for one another, each with its row.
+    chains: Vec<(usize, Timed<'a>)>,
 }
 
 impl<'a, const N: usize, O: Debug + 'a> Trial<'a, N, O> {
@@ -147,7 +149,8 @@ impl<'a, const N: usize, O: Debug + 'a> Trial<'a, N, O> {
             }
             Some(_) => Vec::new(),
         };
-        Trial { plan, subject, inputs, judge: Box::new(judge), rows: Vec::new(), timed: Vec::new() }
+        let judge = Box::new(judge);
+        Trial { plan, subject, inputs, judge, rows: Vec::new(), timed: Vec::new(), chains: Vec::new() }
     }
 
     /// Judges a variant on every input, and has it timed on them later.
@@ -178,6 +181,13 @@ impl<'a, const N: usize, O: Debug + 'a> Trial<'a, N, O> {
         }
         self.rows.push(self.judged(label, solve));
         self.timed.push(Timed { name: label.name, calls, run: Box::new(work) });
+    }
+
+    /// Times a variant that ran already once more, by `work` whose `calls` calls each wait for the answer before.
+    pub fn chain(&mut self, label: Label, calls: usize, work: impl FnMut() -> f64 + 'a) {
+        if let Some(row) = self.rows.iter().position(|row| row.variant == label.name) {
+            self.chains.push((row, Timed { name: label.name, calls, run: Box::new(work) }));
+        }
     }
 
     fn judged(&self, label: Label, solve: impl Fn(&[f64; N]) -> O) -> Row {
@@ -218,7 +228,19 @@ impl<'a, const N: usize, O: Debug + 'a> Trial<'a, N, O> {
                 row.ratio_ci = timing.ratio_ci;
             }
         }
+        self.time_chains();
         self.rows
+    }
+
+    fn time_chains(&mut self) {
+        if self.plan.blocks == 0 {
+            return;
+        }
+        let (rows, mut timed): (Vec<usize>, Vec<Timed<'a>>) = self.chains.drain(..).unzip();
+        let timings = interleaved(&mut timed, self.plan.blocks, self.plan.block_ns);
+        for (row, timing) in rows.into_iter().zip(timings) {
+            self.rows[row].ns_chain = Some(timing.ns_median);
+        }
     }
 }
 
@@ -235,6 +257,7 @@ mod tests {
         let mut trial = Trial::new(plan, SQUARE_ROOT, inputs, judge);
         trial.run(variant("half"), |[x]| x / 2.0);
         trial.run(default("exact"), |[x]| x.sqrt());
+        trial.chain(default("exact"), 100, || (0..100).fold(2.0, |x: f64, _| x.sqrt()));
         trial.finish()
     }
 
@@ -253,5 +276,6 @@ mod tests {
     fn a_plan_with_blocks_has_times() {
         let timed = rows(&Plan { blocks: 3, block_ns: 1e3, ..Plan::errors() });
         assert!(timed.iter().all(|row| row.ns_median > 0.0) && timed[0].ratio == 1.0);
+        assert!(timed[0].ns_chain.is_none() && timed[1].ns_chain.is_some_and(|ns| ns > 0.0));
     }
 }

@@ -3,11 +3,11 @@
 //! | method | error in [0, 1], of max\|P\| | time | loses digits |
 //! |---|---|---|---|
 //! | [`Method::Horner`] | 10 ulp | 1 | near multiple roots, in small tails, at the far end |
-//! | [`Method::Bernstein`] | 1½ ulp | 1.1 | near multiple roots |
+//! | [`Method::Bernstein`] | 1½ ulp | 1 | near multiple roots |
 //! | [`Method::DeCasteljau`] | 2 ulp | 1 | far from the origin |
-//! | [`Method::VolkSchumaker`] | 2 ulp | 2 | near multiple roots, far from the origin |
+//! | [`Method::VolkSchumaker`] | 2 ulp | 2½ | near multiple roots, far from the origin |
 //! | [`Method::Offset`] | 2½ ulp, ½ ulp of a large offset | 1 | near multiple roots, in small tails |
-//! | [`Method::Compensated`] | ½ ulp of the value itself | 9 | nowhere short of a condition number of 10¹⁵ |
+//! | [`Method::Compensated`] | ½ ulp of the value itself | 16 | nowhere short of a condition number of 10¹⁵ |
 //! | [`Method::FromEnds`] | ½ ulp of the value itself | half of that once prepared | nowhere short of a condition number of 10¹⁵ |
 //!
 //! No plain method meets every bar that a scene may set. The default is [`Method::FromEnds`], whose coefficients a piece of curve makes

@@ -1,4 +1,5 @@
-//! A cubic from its Bézier points, on the six families that pull the methods apart. Input: t and four points. Truth: double-double.
+//! A cubic from its Bézier points, on the six families that pull the methods apart, in f64, and some in f32 with the
+//! conversions it takes. Input: t and four points. Truth: double-double.
 
 use super::{SEED, ulp};
 use crate::geometry::curve::evaluate::{batch, double_double, magnitude};
@@ -7,8 +8,10 @@ use crate::math::Dd;
 use crate::math::elementary::exp2;
 use crate::math::error::UNIT_ROUNDOFF;
 use crate::math::random::Random;
+use crate::report::naive::curves as single;
 use crate::report::row::Row;
 use crate::report::trial::{Plan, Subject, Trial, Verdict, default, variant};
+use std::hint::black_box;
 
 /// t, then four Bézier points.
 type Input = [f64; 5];
@@ -64,28 +67,60 @@ fn trial(plan: &Plan, case: &Case) -> Vec<Row> {
         Verdict::error(error / scale(input))
     };
     let ts: Vec<f64> = inputs.iter().map(|i| i[0]).collect();
-    let prepared_ts = ts.clone();
     let one = inputs.first().map_or([0.0; 4], points);
     let mut trial = Trial::new(plan, subject, inputs, judge);
-    trial.run(variant("horner"), |i| Method::Horner.evaluate(&points(i), i[0]));
-    trial.run(variant("lerps a+t(b−a)"), |i| lerps(&points(i), i[0]));
-    trial.run(variant("bernstein"), |i| Method::Bernstein.evaluate(&points(i), i[0]));
-    trial.run(variant("volk schumaker"), |i| Method::VolkSchumaker.evaluate(&points(i), i[0]));
-    trial.run(variant("de casteljau"), |i| Method::DeCasteljau.evaluate(&points(i), i[0]));
-    trial.run(variant("offset"), |i| Method::Offset.evaluate(&points(i), i[0]));
-    let mut out = vec![0.0; ts.len()];
+    let mut methods = Methods { trial: &mut trial, ts: &ts, one };
+    methods.run("horner", |p, t| Method::Horner.evaluate(p, t));
+    methods.run("horner, f32", single::horner);
+    methods.run("lerps a+t(b−a)", lerps);
+    methods.run("bernstein", |p, t| Method::Bernstein.evaluate(p, t));
+    methods.run("bernstein, f32", single::bernstein);
+    methods.run("volk schumaker", |p, t| Method::VolkSchumaker.evaluate(p, t));
+    methods.run("de casteljau", |p, t| Method::DeCasteljau.evaluate(p, t));
+    methods.run("de casteljau, f32", single::de_casteljau);
+    methods.run("offset", |p, t| Method::Offset.evaluate(p, t));
+    methods.run("compensated", |p, t| Method::Compensated.evaluate(p, t));
+    let (batch_ts, mut out) = (ts.clone(), vec![0.0; ts.len()]);
     let batched = move || {
-        batch(std::hint::black_box(&one), &ts, &mut out);
+        batch(black_box(&one), &batch_ts, &mut out);
         out.last().copied().unwrap_or(0.0)
     };
     trial.run_timed(variant("batched"), plan.inputs, |i| batch_of_one(&points(i), i[0]), batched);
-    trial.run(variant("compensated"), |i| Method::Compensated.evaluate(&points(i), i[0]));
-    let why = "with compensated, it is the only one within the bars of all six sets";
-    let piece = Piece::new(0.0, 1.0, one.map(Dd::from));
-    let many = move || prepared_ts.iter().map(|t| std::hint::black_box(&piece).at(*t)).sum();
-    let from_ends = default("from ends").note(why);
-    trial.run_timed(from_ends, plan.inputs, |i| Method::DEFAULT.evaluate(&points(i), i[0]), many);
+    from_ends(&mut trial, &ts, one);
     trial.finish()
+}
+
+/// The default, whose coefficients a piece of curve makes once.
+fn from_ends(trial: &mut Trial<'_, 5, f64>, ts: &[f64], one: [f64; 4]) {
+    let why = "with compensated, it is the only one within the bars of all six sets";
+    let label = default("from ends").note(why);
+    let piece = Piece::new(0.0, 1.0, one.map(Dd::from));
+    let all = ts.to_vec();
+    let many = move || all.iter().map(|t| black_box(&piece).at(*t)).sum();
+    trial.run_timed(label, ts.len(), |i| Method::DEFAULT.evaluate(&points(i), i[0]), many);
+    trial.chain(label, ts.len(), chained(ts, move |t| black_box(&piece).at(t)));
+}
+
+/// Methods that start from points alone, timed on many curves, and in a chain on one.
+struct Methods<'t, 'a> {
+    trial: &'t mut Trial<'a, 5, f64>,
+    ts: &'t [f64],
+    one: [f64; 4],
+}
+
+impl<'a> Methods<'_, 'a> {
+    fn run(&mut self, name: &'static str, method: impl Fn(&[f64; 4], f64) -> f64 + Copy + 'a) {
+        let one = self.one;
+        self.trial.run(variant(name), move |i| method(&points(i), i[0]));
+        let chain = chained(self.ts, move |t| method(black_box(&one), t));
+        self.trial.chain(variant(name), self.ts.len(), chain);
+    }
+}
+
+/// Evaluations one after the other: each parameter waits for the value before it, of which it takes 0 times.
+fn chained<F: Fn(f64) -> f64>(ts: &[f64], evaluate: F) -> impl FnMut() -> f64 + use<F> {
+    let ts = ts.to_vec();
+    move || ts.iter().fold(0.0, |before, t| evaluate(t + 0.0 * before))
 }
 
 fn points(input: &Input) -> [f64; 4] {

@@ -3,6 +3,7 @@
 
 use super::SEED;
 use super::spheres::line;
+use super::tapes::{self, AlongTape, Squares, Tape};
 use crate::math::Dd;
 use crate::math::interval::Interval;
 use crate::math::isolate::{Bounded, Zeros};
@@ -13,6 +14,7 @@ use crate::report::naive::shapes::Line;
 use crate::report::row::Row;
 use crate::report::trial::{Plan, Subject, Trial, Verdict, default, variant};
 use glam::DVec3;
+use std::rc::Rc;
 
 type Input = [f64; 7];
 
@@ -30,6 +32,7 @@ struct Surface {
     bar: f64,
     value: fn([f64; 3]) -> f64,
     bounds: fn([Interval; 3]) -> (Interval, [Interval; 3]),
+    tape: Tape,
     first: fn(&Line) -> Option<f64>,
 }
 
@@ -39,6 +42,7 @@ const SURFACES: [Surface; 4] = [
         bar: 1e-12,
         value: sphere,
         bounds: sphere_bounds,
+        tape: tapes::sphere,
         first: |l| first_of_radius(l, 1.0),
     },
     Surface {
@@ -46,6 +50,7 @@ const SURFACES: [Surface; 4] = [
         bar: 1e-6,
         value: squared,
         bounds: squared_bounds,
+        tape: |squares| tapes::shell(squares, 0.0),
         first: |l| first_of_radius(l, 1.0),
     },
     Surface {
@@ -53,9 +58,17 @@ const SURFACES: [Surface; 4] = [
         bar: 1e-11,
         value: shell,
         bounds: shell_bounds,
+        tape: |squares| tapes::shell(squares, THICKNESS),
         first: |l| first_of_radius(l, 1.0 + THICKNESS),
     },
-    Surface { case: "tanglecube", bar: 1e-12, value: tangle, bounds: tangle_bounds, first: first_of_tangle },
+    Surface {
+        case: "tanglecube",
+        bar: 1e-12,
+        value: tangle,
+        bounds: tangle_bounds,
+        tape: tapes::tangle,
+        first: first_of_tangle,
+    },
 ];
 
 /// Trials of implicit surfaces.
@@ -81,12 +94,27 @@ fn trial(plan: &Plan, surface: Surface) -> Vec<Row> {
         });
     }
     trial.run(default("intervals").note("steps miss what is thin or touches"), move |i| {
-        let along = Along { line: line(i), surface };
-        let mut zeros = Zeros::new(&along, 0.0, FAR, BUDGET);
-        let first = zeros.next().map(|zero| zero.t);
-        (first, zeros.evaluations())
+        first_zero(&Along { line: line(i), surface })
+    });
+    for (name, squares) in [("intervals, as written", Squares::Known), ("intervals, x·x", Squares::Products)]
+    {
+        let field = Rc::new((surface.tape)(squares));
+        trial.run(variant(name), move |i| {
+            first_zero(&AlongTape::by_intervals(&field, surface.value, line(i)))
+        });
+    }
+    let field = Rc::new((surface.tape)(Squares::Known));
+    trial.run(variant("linear forms, as written"), move |i| {
+        first_zero(&AlongTape::by_forms(&field, surface.value, line(i)))
     });
     trial.finish()
+}
+
+/// The first zero, and how often the function was evaluated or bounded.
+fn first_zero(along: &impl Bounded) -> (Option<f64>, usize) {
+    let mut zeros = Zeros::new(along, 0.0, FAR, BUDGET);
+    let first = zeros.next().map(|zero| zero.t);
+    (first, zeros.evaluations())
 }
 
 fn judge(i: &Input, (found, evaluations): &(Option<f64>, usize)) -> Verdict {

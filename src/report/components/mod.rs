@@ -1,6 +1,7 @@
 //! The components that are measured, one file each: case sets, truth and variants.
 
 mod curves;
+mod enclosures;
 mod fresnel;
 mod implicits;
 mod lengths;
@@ -10,6 +11,7 @@ mod reach;
 mod roots;
 mod skins;
 mod spheres;
+mod tapes;
 mod tori;
 mod triangles;
 
@@ -23,7 +25,7 @@ pub const SEED: u64 = 20_240_607;
 pub type Component = fn(&Plan) -> Vec<Row>;
 
 /// All components by name, in the order of the report.
-pub const COMPONENTS: [(&str, Component); 12] = [
+pub const COMPONENTS: [(&str, Component); 13] = [
     ("curves", curves::rows),
     ("lengths", lengths::rows),
     ("roots", roots::rows),
@@ -32,6 +34,7 @@ pub const COMPONENTS: [(&str, Component); 12] = [
     ("triangles", triangles::rows),
     ("tori", tori::rows),
     ("patches", patches::rows),
+    ("enclosures", enclosures::rows),
     ("implicits", implicits::rows),
     ("fresnel", fresnel::rows),
     ("reach", reach::rows),
