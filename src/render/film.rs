@@ -1,6 +1,7 @@
 //! What a picture is while it is made: linear RGB radiance per pixel in f64, and what went wrong. Knows neither files nor
 //! tracers. A pixel's samples are summed by one thread in the order of their numbers, so that its bits depend on nothing else.
 
+use super::features::{Features, Layers, Source};
 use super::sampler::RayCounts;
 use super::settings::Crop;
 use crate::diag::Span;
@@ -16,6 +17,12 @@ pub struct Film {
     pub crop: Crop,
     /// Mean radiance, row by row from the top; black where not finished.
     pub pixels: Vec<Rgb>,
+    /// What is kept of each pixel beside radiance; empty where nothing is asked for.
+    pub features: Vec<Features>,
+    /// The objects whose numbers are in `features`, from 1.
+    pub sources: Vec<Source>,
+    /// Which features are to be layers of a file.
+    pub layers: Layers,
     /// Which pixels are finished; all of them unless the rendering was cancelled.
     pub finished: Vec<bool>,
     /// What happened on the way.
@@ -27,12 +34,58 @@ pub struct Film {
 pub struct Report {
     /// Rays cast.
     pub rays: RayCounts,
+    /// Samples of the finished pixels.
+    pub taken: Taken,
     /// Camera samples that were not finite and were left out.
     pub non_finite: u64,
     /// The first pixel with such a sample, in reading order.
     pub first_non_finite: Option<Fault>,
     /// Functions of the scene that were undefined, each with its count of pixels and its first pixel; sorted by place.
     pub undefined: Vec<Fault>,
+}
+
+/// How many samples pixels took.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Taken {
+    /// How many pixels.
+    pub pixels: u64,
+    /// Samples of all of them.
+    pub total: u64,
+    /// Fewest of a pixel.
+    pub least: u32,
+    /// Most of a pixel.
+    pub most: u32,
+    /// How many pixels had a small enough error; none where no error was asked for.
+    pub enough: u64,
+}
+
+impl Taken {
+    /// Counts a pixel with so many samples.
+    pub fn add(&mut self, samples: u32, enough: bool) {
+        let (least, most) = (samples, samples);
+        self.merge(Taken { pixels: 1, total: u64::from(samples), least, most, enough: enough.into() });
+    }
+
+    /// Takes the pixels of another part.
+    pub fn merge(&mut self, other: Taken) {
+        let least = match (self.pixels, other.pixels) {
+            (0, _) => other.least,
+            (_, 0) => self.least,
+            _ => self.least.min(other.least),
+        };
+        *self = Taken {
+            pixels: self.pixels + other.pixels,
+            total: self.total + other.total,
+            least,
+            most: self.most.max(other.most),
+            enough: self.enough + other.enough,
+        };
+    }
+
+    /// Samples a pixel; 0 without pixels.
+    pub fn mean(self) -> f64 {
+        self.total as f64 / self.pixels.max(1) as f64
+    }
 }
 
 /// Something that went wrong at pixels.
@@ -52,6 +105,7 @@ impl Report {
     /// Takes another part's report. The order of the parts does not matter.
     pub fn merge(&mut self, other: Report) {
         self.rays += other.rays;
+        self.taken.merge(other.taken);
         self.non_finite += other.non_finite;
         self.first_non_finite = match (self.first_non_finite, other.first_non_finite) {
             (Some(a), Some(b)) => Some(a.with(b)),
@@ -86,7 +140,42 @@ impl Film {
     /// A black film with nothing finished.
     pub fn new(size: [u32; 2], crop: Crop) -> Film {
         let n = crop.area();
-        Film { size, crop, pixels: vec![Rgb::ZERO; n], finished: vec![false; n], report: Report::default() }
+        Film {
+            size,
+            crop,
+            pixels: vec![Rgb::ZERO; n],
+            features: Vec::new(),
+            sources: Vec::new(),
+            layers: Layers::NONE,
+            finished: vec![false; n],
+            report: Report::default(),
+        }
+    }
+
+    /// Makes room for features, where any are kept.
+    pub fn keep(&mut self, kept: Layers) {
+        let n = if kept.is_empty() { 0 } else { self.pixels.len() };
+        self.features = vec![Features::default(); n];
+    }
+
+    /// The number of an object in this film, which it gets if it has none.
+    pub fn number_of(&mut self, source: &Source) -> u32 {
+        let known = self.sources.iter().position(|known| known == source);
+        let i = known.unwrap_or_else(|| {
+            self.sources.push(source.clone());
+            self.sources.len() - 1
+        });
+        i as u32 + 1
+    }
+
+    /// Numbers the objects by their place in the text, whichever was seen first.
+    pub fn sort_sources(&mut self) {
+        let mut order: Vec<usize> = (0..self.sources.len()).collect();
+        order.sort_by(|a, b| self.sources[*a].order(&self.sources[*b]));
+        let mut numbers = vec![0; order.len() + 1];
+        order.iter().enumerate().for_each(|(new, old)| numbers[old + 1] = new as u32 + 1);
+        self.sources = order.iter().map(|old| self.sources[*old].clone()).collect();
+        self.features.iter_mut().for_each(|f| f.source = numbers[f.source as usize]);
     }
 
     /// Shown where a function of the scene is undefined.

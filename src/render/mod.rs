@@ -10,14 +10,18 @@ pub trait Tracer: Sync {
     fn radiance(&self, world: &World, ray: Ray, sampler: &mut sampler::Sampler) -> Rgb;
 }
 
+pub mod adaptive;
 pub mod camera;
 pub mod compare;
+pub mod features;
 pub mod film;
 mod irradiance;
 mod medium;
 pub mod output;
+pub mod passes;
 pub mod path;
 mod photon;
+mod pixel;
 pub mod sampler;
 pub mod settings;
 pub mod tiles;

@@ -1,6 +1,7 @@
 //! Pictures as files: 8-bit sRGB as PNG and JPEG, linear radiance as HDR (RGBE) and EXR (32-bit float, with metadata).
 //! A file appears whole or not at all: it is written beside its place and renamed. Many pictures in one file are [`movie`]s.
 
+mod layers;
 pub mod movie;
 
 use super::film::Film;
@@ -67,6 +68,26 @@ pub struct Metadata {
     pub sampler: String,
     /// Width and height of the whole picture.
     pub size: [u32; 2],
+    /// The estimated error at which a pixel was finished; `samples` are then the most.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub error: Option<f64>,
+    /// The objects that the layer `source` numbers.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub sources: Vec<Origin>,
+}
+
+/// An object of the layer `source`.
+#[derive(Clone, Debug, Default, PartialEq, serde::Serialize)]
+pub struct Origin {
+    /// From 1.
+    pub number: u32,
+    /// The scene's file, without the folders it lies in.
+    pub file: String,
+    /// From 1.
+    pub line: usize,
+    /// Its `name`, where it has one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub name: Option<String>,
 }
 
 /// Why a picture could not be made into a file.
@@ -132,33 +153,40 @@ fn write_rgb8(
 fn write_exr(film: &Film, about: &Metadata, bytes: &mut Cursor<Vec<u8>>) -> Result<(), OutputError> {
     use exr::prelude::*;
     let crop = film.crop;
-    let at = |p: Vec2<usize>| {
-        let c = film.pixels[p.y() * crop.width as usize + p.x()];
-        (c.x as f32, c.y as f32, c.z as f32)
+    let size = (crop.width as usize, crop.height as usize);
+    let window = IntegerBounds::new((0, 0), (film.size[0] as usize, film.size[1] as usize));
+    let attributes = attributes(film, about)?;
+    let written = if film.layers.is_empty() {
+        let at = |p: Vec2<usize>| {
+            let c = film.pixels[p.y() * size.0 + p.x()];
+            (c.x as f32, c.y as f32, c.z as f32)
+        };
+        let layer = Layer::new(size, attributes, ENCODING, SpecificChannels::rgb(at));
+        Image::new(ImageAttributes::new(window), layer).write().non_parallel().to_buffered(bytes)
+    } else {
+        let layer = Layer::new(size, attributes, ENCODING, layers::channels(film));
+        Image::new(ImageAttributes::new(window), layer).write().non_parallel().to_buffered(bytes)
     };
+    written.map_err(|e| OutputError::Encode(e.to_string()))
+}
+
+/// Written by one thread in order, so that the bytes do not depend on who was faster.
+const ENCODING: exr::prelude::Encoding = exr::prelude::Encoding {
+    compression: exr::prelude::Compression::ZIP16,
+    blocks: exr::prelude::Blocks::ScanLines,
+    line_order: exr::prelude::LineOrder::Increasing,
+};
+
+fn attributes(film: &Film, about: &Metadata) -> Result<exr::prelude::LayerAttributes, OutputError> {
+    use exr::prelude::{LayerAttributes, Text, Vec2};
     let text = |s: &str| Text::new_or_none(s).unwrap_or_default();
     let json = serde_json::to_string(about).map_err(|e| OutputError::Encode(e.to_string()))?;
-    let attributes = LayerAttributes {
-        layer_position: Vec2(crop.x as i32, crop.y as i32),
+    Ok(LayerAttributes {
+        layer_position: Vec2(film.crop.x as i32, film.crop.y as i32),
         software_name: Some(text(&format!("ogee {}", about.version))),
         comments: Some(text(&json)),
         ..LayerAttributes::default()
-    };
-    let layer = Layer::new(
-        (crop.width as usize, crop.height as usize),
-        attributes,
-        // Written by one thread in order, so that the bytes do not depend on who was faster.
-        Encoding {
-            compression: Compression::ZIP16,
-            blocks: Blocks::ScanLines,
-            line_order: LineOrder::Increasing,
-        },
-        SpecificChannels::rgb(at),
-    );
-    let mut image = Image::from_layer(layer);
-    image.attributes.display_window =
-        IntegerBounds::new((0, 0), (film.size[0] as usize, film.size[1] as usize));
-    image.write().non_parallel().to_buffered(bytes).map_err(|e| OutputError::Encode(e.to_string()))
+    })
 }
 
 /// All pixels as 8-bit sRGB, row by row.

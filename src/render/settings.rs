@@ -1,6 +1,7 @@
 //! What a picture is rendered with: the command line's words before the scene's, the scene's before the defaults.
 //! Every default of the `render` block stands here and nowhere else.
 
+use super::features::Layers;
 use crate::scene::{Accelerator, RenderSettings, Rgb, SamplerKind, ToneMap, TracerKind};
 
 /// Settings with nothing left open.
@@ -28,6 +29,10 @@ pub struct ResolvedSettings {
     pub tonemap: ToneMap,
     /// Seen where nothing else is, in place of any sky; lights nothing.
     pub background: Option<Rgb>,
+    /// Where each pixel is finished once the estimated error of its luminance, relative to it, is this; `samples` are then the most.
+    pub error: Option<f64>,
+    /// What of each pixel is written beside its radiance.
+    pub layers: Layers,
     /// Threads; none takes as many as the machine has processors.
     pub threads: Option<usize>,
 }
@@ -89,6 +94,8 @@ impl ResolvedSettings {
             exposure: overrides.exposure.or(scene.exposure).unwrap_or(0.0),
             tonemap: overrides.tonemap.or(scene.tonemap).unwrap_or_default(),
             background: overrides.background.or(scene.background),
+            error: None,
+            layers: Layers::NONE,
             threads: None,
         }
     }

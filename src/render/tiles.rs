@@ -3,13 +3,11 @@
 
 use super::Tracer;
 use super::camera::View;
-use super::film::{Fault, Film, PixelSum, Report};
-use super::sampler::Sampler;
+use super::features::Features;
+use super::film::{Film, Report};
+use super::pixel::Pixel;
 use super::settings::{Crop, ResolvedSettings};
-use crate::diag::Span;
-use crate::scene::Rgb;
-use crate::world::{Ray, World};
-use glam::DVec2;
+use crate::world::World;
 use rayon::prelude::*;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
@@ -81,10 +79,11 @@ pub fn render_onto(
         progress.tiles(done.fetch_add(1, Ordering::Relaxed) + 1, tiles.len());
     };
     run(picture.settings.threads, &tiles, &work);
+    film.lock().unwrap_or_else(|poisoned| poisoned.into_inner()).sort_sources();
 }
 
 /// Does the tiles on as many threads as asked for. One thread, or one tile, starts no pool.
-fn run(threads: Option<usize>, tiles: &[Crop], work: &(dyn Fn(&Crop) + Sync)) {
+pub(super) fn run<T: Sync>(threads: Option<usize>, tiles: &[T], work: &(dyn Fn(&T) + Sync)) {
     let one_each = || tiles.par_iter().with_max_len(1).for_each(work);
     match threads {
         Some(0 | 1) => tiles.iter().for_each(work),
@@ -98,7 +97,7 @@ fn run(threads: Option<usize>, tiles: &[Crop], work: &(dyn Fn(&Crop) + Sync)) {
 }
 
 /// The tiles of a crop in reading order.
-fn tiles_of(crop: Crop, tile: u32) -> Vec<Crop> {
+pub(super) fn tiles_of(crop: Crop, tile: u32) -> Vec<Crop> {
     let steps =
         |from: u32, n: u32| (0..n.div_ceil(tile)).map(move |i| (from + i * tile, tile.min(n - i * tile)));
     steps(crop.y, crop.height)
@@ -106,80 +105,73 @@ fn tiles_of(crop: Crop, tile: u32) -> Vec<Crop> {
         .collect()
 }
 
-fn render_tile(picture: Picture<'_>, crop: Crop, cancel: &AtomicBool) -> Film {
-    let mut film = Film::new(picture.settings.size, crop);
-    for row in 0..crop.height {
-        for column in 0..crop.width {
-            let pixel = [crop.x + column, crop.y + row];
-            let Some(radiance) = render_pixel(picture, pixel, &mut film.report, cancel) else { return film };
-            let i = (row * crop.width + column) as usize;
-            film.pixels[i] = radiance;
-            film.finished[i] = true;
-        }
-    }
-    film
+/// A rectangle of pixels on the way, and what happened there.
+pub(super) struct Tile {
+    crop: Crop,
+    pixels: Vec<Pixel>,
+    report: Report,
 }
 
-/// The radiance of a pixel; none where it was cancelled before its last sample.
-fn render_pixel(
-    picture: Picture<'_>,
-    pixel: [u32; 2],
-    report: &mut Report,
-    cancel: &AtomicBool,
-) -> Option<Rgb> {
-    let mut sum = PixelSum::default();
-    let mut undefined = None;
-    for sample in 0..picture.settings.samples {
-        if cancel.load(Ordering::Relaxed) {
-            return None;
-        }
-        let ResolvedSettings { seed, sampler: kind, samples, .. } = *picture.settings;
-        let mut sampler = Sampler::new(seed, pixel[0], pixel[1], sample).of_kind(kind, samples);
-        if let Some(ray) = camera_ray(picture, pixel, &mut sampler) {
-            let before = sum.non_finite;
-            sum.add(picture.tracer.radiance(picture.world, ray, &mut sampler));
-            if sum.non_finite > before {
-                note_non_finite(picture.world, ray, pixel, report);
+impl Tile {
+    /// Without a sample.
+    pub fn new(crop: Crop, settings: &ResolvedSettings) -> Tile {
+        let places = (0..crop.height).flat_map(|y| (0..crop.width).map(move |x| [crop.x + x, crop.y + y]));
+        let pixels = places.map(|place| Pixel::new(place, settings.layers)).collect();
+        Tile { crop, pixels, report: Report::default() }
+    }
+
+    /// Takes the samples up to number `to` of each pixel; false where that was cancelled.
+    pub fn advance(&mut self, picture: Picture<'_>, to: u32, cancel: &AtomicBool) -> bool {
+        let Tile { pixels, report, .. } = self;
+        pixels.iter_mut().all(|pixel| pixel.advance(picture, to, report, cancel))
+    }
+
+    /// Takes as many samples of each pixel as its error asks for.
+    fn settle(&mut self, picture: Picture<'_>, target: f64, cancel: &AtomicBool) {
+        let Tile { pixels, report, .. } = self;
+        pixels.iter_mut().all(|pixel| pixel.settle(picture, target, report, cancel));
+    }
+
+    /// What there is of the picture; pixels with fewer than `to` samples are not finished, unless they have enough.
+    pub fn film(self: &Tile, settings: &ResolvedSettings, to: u32) -> Film {
+        let mut film = Film::new(settings.size, self.crop);
+        film.layers = settings.layers;
+        film.report = self.report.clone();
+        film.keep(settings.layers);
+        for (i, pixel) in self.pixels.iter().enumerate() {
+            if pixel.taken < to && !pixel.enough {
+                continue;
             }
-        } else {
-            sum.add(Rgb::ZERO);
+            film.pixels[i] = pixel.radiance(&mut film.report);
+            film.finished[i] = true;
+            film.report.taken.add(pixel.taken, pixel.enough);
+            if let Some(sum) = &pixel.features {
+                let (features, source) = sum.features();
+                film.features[i] = Features { source: source.map_or(0, |s| film.number_of(s)), ..features };
+            }
         }
-        undefined = undefined.or(sampler.undefined);
-        report.rays += sampler.rays;
-    }
-    Some(match undefined {
-        Some(fault) => {
-            report.add_undefined(Fault { pixel, count: 1, span: Some(fault.span), kind: Some(fault.kind) });
-            Film::UNDEFINED
-        }
-        None => sum.mean(),
-    })
-}
-
-/// The ray of a sample: through the pixel's centre for the only one, else through a point of its square.
-fn camera_ray(picture: Picture<'_>, pixel: [u32; 2], sampler: &mut Sampler) -> Option<Ray> {
-    let corner = DVec2::new(f64::from(pixel[0]), f64::from(pixel[1]));
-    let within = if picture.settings.samples == 1 { DVec2::splat(0.5) } else { sampler.next_2d() };
-    let lens = if picture.view.has_lens() { sampler.next_2d() } else { DVec2::ZERO };
-    picture.view.ray(corner + within, lens)
-}
-
-/// Counts a sample that was not finite, and finds out whose it was by asking again what the camera's ray meets.
-fn note_non_finite(world: &World, ray: Ray, pixel: [u32; 2], report: &mut Report) {
-    report.non_finite += 1;
-    match &mut report.first_non_finite {
-        None => report.first_non_finite = Some(Fault { pixel, count: 1, span: seen(world, ray), kind: None }),
-        Some(first) => first.count += 1,
+        film
     }
 }
 
-fn seen(world: &World, ray: Ray) -> Option<Span> {
-    let hit = world.closest(&ray)?;
-    world.provenance(hit.primitive).map(|p| p.span)
+fn render_tile(picture: Picture<'_>, crop: Crop, cancel: &AtomicBool) -> Film {
+    let mut tile = Tile::new(crop, picture.settings);
+    let samples = picture.settings.samples;
+    match picture.settings.error {
+        None => drop(tile.advance(picture, samples, cancel)),
+        Some(target) => tile.settle(picture, target, cancel),
+    }
+    tile.film(picture.settings, samples)
 }
 
 /// Copies a part into a film.
-fn place(film: &mut Film, part: Film) {
+pub(super) fn place(film: &mut Film, part: Film) {
+    let has_features = !part.features.is_empty();
+    if has_features {
+        film.features.resize(film.pixels.len(), Features::default());
+    }
+    film.layers = part.layers;
+    let numbers: Vec<u32> = part.sources.iter().map(|source| film.number_of(source)).collect();
     let width = part.crop.width as usize;
     for row in 0..part.crop.height as usize {
         let to = (row + (part.crop.y - film.crop.y) as usize) * film.crop.width as usize
@@ -187,6 +179,11 @@ fn place(film: &mut Film, part: Film) {
         let from = row * width;
         film.pixels[to..to + width].copy_from_slice(&part.pixels[from..from + width]);
         film.finished[to..to + width].copy_from_slice(&part.finished[from..from + width]);
+        for (to, from) in (to..to + width).zip(from..from + width).filter(|_| has_features) {
+            let Features { source, .. } = part.features[from];
+            let source = if source == 0 { 0 } else { numbers[source as usize - 1] };
+            film.features[to] = Features { source, ..part.features[from] };
+        }
     }
     film.report.merge(part.report);
 }

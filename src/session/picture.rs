@@ -5,12 +5,14 @@ use super::whole;
 use crate::diag::{Code, Diagnostic};
 use crate::math::field::FaultKind;
 use crate::render::camera::View;
+use crate::render::features::Layers;
 use crate::render::film::{Fault, Film};
+use crate::render::passes::Passes;
 use crate::render::settings::{Crop, ResolvedSettings};
 use crate::render::tiles::{self, Picture, Progress};
 use crate::render::{self, Tracer};
 use crate::scene::assets::{AssetCache, Loader};
-use crate::scene::{Camera, RenderSettings, Scene};
+use crate::scene::{Camera, RenderSettings, SamplerKind, Scene, TracerKind};
 use crate::world::{Kept, World, WorldOptions};
 use std::sync::Mutex;
 use std::sync::atomic::AtomicBool;
@@ -24,6 +26,10 @@ pub struct Job {
     pub camera: Option<String>,
     /// The part to render: x, y, width, height in pixels.
     pub crop: Option<[u32; 4]>,
+    /// The estimated error, relative to its luminance, at which a pixel is finished; see [`ResolvedSettings::error`].
+    pub error: Option<f64>,
+    /// What of each pixel is written beside its radiance.
+    pub layers: Layers,
     /// Threads; none takes as many as the machine has processors.
     pub threads: Option<usize>,
 }
@@ -41,7 +47,7 @@ pub struct Prepared {
 /// The settings of a job for a scene, and what keeps them from being used. Cheap: nothing is built.
 pub fn settings(scene: &Scene, job: &Job) -> Result<ResolvedSettings, String> {
     let mut settings = ResolvedSettings::new(&scene.render, &job.overrides);
-    settings.threads = job.threads;
+    (settings.threads, settings.error, settings.layers) = (job.threads, job.error, job.layers);
     if let Some([x, y, width, height]) = job.crop {
         let [w, h] = settings.size;
         settings.crop = Crop { x, y, width, height };
@@ -121,6 +127,15 @@ impl Prepared {
     pub fn retraced(self, settings: ResolvedSettings) -> Prepared {
         let tracer = render::tracer(settings.tracer, &self.world, &self.view, &settings);
         Prepared { settings, tracer, ..self }
+    }
+
+    /// The picture in passes. Photons and irradiance cannot: how many there are depends on the number of samples.
+    pub fn passes(&self) -> Option<Passes<'_>> {
+        let goes_on = match self.settings.tracer {
+            TracerKind::Raycast | TracerKind::Whitted | TracerKind::MonteCarlo | TracerKind::Path => true,
+            TracerKind::Irradiance | TracerKind::Photon => false,
+        };
+        (goes_on && self.settings.sampler != SamplerKind::Stratified).then(|| Passes::new(self.picture()))
     }
 
     /// A film on which nothing is yet.

@@ -64,6 +64,64 @@ fn flags_come_before_what_the_scene_says() {
 }
 
 #[test]
+fn a_budget_tells_the_samples_that_make_the_same_picture() {
+    let folder = ball();
+    let run = folder
+        .ogee("render ball.scene --size 32x24 --tracer path --budget 300ms -o a.exr --stats json")
+        .expect(0);
+    let stats: serde_json::Value = serde_json::from_str(run.out()).unwrap();
+    let n = stats["samples"].as_u64().unwrap();
+    assert!(n >= 2, "{n}");
+    folder.ogee(&format!("render ball.scene --size 32x24 --tracer path --samples {n} -o b.exr")).expect(0);
+    assert!(folder.read("a.exr") == folder.read("b.exr"), "{n} samples make the same file");
+    let run = folder.ogee("render ball.scene --size 32x24 --budget 1h --samples 8 -o c.exr").expect(0);
+    assert!(run.stderr.contains("8 samples a pixel"), "{}", run.stderr);
+}
+
+#[test]
+fn budgets_errors_and_layers_that_cannot_be_are_told_before_the_work_begins() {
+    let folder = ball();
+    for (line, said) in [
+        ("--budget 30", "30s"),
+        ("--budget 1s --error 0.1", "cannot be used with"),
+        ("--budget 1s --tracer photon", "--tracer path"),
+        ("--budget 1s --sampler stratified", "--sampler sobol"),
+        ("--budget 1s --samples 1", "2 samples"),
+        ("--error 0", "above 0"),
+        ("--layers depth", ".exr"),
+        ("--layers deep -o a.exr", "depth"),
+    ] {
+        let run = folder.ogee(&format!("render ball.scene {line}")).expect(2);
+        assert!(run.stderr.contains(said), "{line}: {}", run.stderr);
+    }
+    assert_eq!(folder.names(), ["ball.scene"]);
+}
+
+#[test]
+fn an_error_tells_how_many_samples_it_took() {
+    let folder = ball();
+    let run = folder.ogee("render ball.scene --size 16x12 --error 0.005 --stats json").expect(0);
+    let stats: serde_json::Value = serde_json::from_str(run.out()).unwrap();
+    assert_eq!((&stats["samples"], &stats["error"]), (&4096.into(), &0.005.into()));
+    let taken = &stats["samples_taken"];
+    assert_eq!(taken["least"], 32);
+    assert!(taken["mean"].as_f64().unwrap() < taken["most"].as_f64().unwrap(), "{taken}");
+    assert!(run.stderr.contains("on average"), "{}", run.stderr);
+}
+
+#[test]
+fn the_layer_of_objects_tells_their_lines_and_no_folders() {
+    let folder = ball();
+    folder.ogee("render ball.scene --size 8x6 -o a.exr --layers source,depth").expect(0);
+    let bytes = folder.read("a.exr");
+    let text = String::from_utf8_lossy(&bytes);
+    assert!(
+        text.contains(r#""sources":[{"number":1,"file":"ball.scene","line":"#),
+        "the table is in the metadata"
+    );
+}
+
+#[test]
 fn a_crop_is_that_part_of_the_picture() {
     let folder = ball();
     folder.ogee("render ball.scene --size 32x24 -o whole.png").expect(0);
@@ -82,8 +140,8 @@ fn faults_of_the_scene_exit_1_of_the_line_2_of_the_machine_3() {
     folder.ogee("check broken.scene").expect(1);
     folder.ogee("render ball.scene --size big").expect(2);
     folder.ogee("render ball.scene --tracer magic").expect(2);
-    let run = folder.ogee("render ball.scene --budget 30s").expect(2);
-    assert!(run.stderr.contains("`--budget` is not built yet"), "{}", run.stderr);
+    let run = folder.ogee("render ball.scene --denoise").expect(2);
+    assert!(run.stderr.contains("`--denoise` is not built yet"), "{}", run.stderr);
     let run = folder.ogee("render bal.scene").expect(3);
     assert!(run.stderr.contains("did you mean ball.scene?"), "{}", run.stderr);
     folder.ogee("render ball.scene -o no/such/folder/a.png").expect(3);

@@ -6,7 +6,9 @@ use ogee::geometry::mesh::Mesh;
 use ogee::math::Affine;
 use ogee::render::Tracer;
 use ogee::render::camera::View;
+use ogee::render::features::Layer;
 use ogee::render::film::Film;
+use ogee::render::passes::Passes;
 use ogee::render::sampler::Sampler;
 use ogee::render::settings::{Crop, ResolvedSettings};
 use ogee::render::tiles::{Picture, Progress, render, render_in_tiles};
@@ -224,6 +226,95 @@ fn depends_on_nothing_but_the_scene(tracer: TracerKind) {
             );
         }
     }
+}
+
+#[test]
+fn passes_come_to_the_bits_of_as_many_samples_at_once() {
+    for tracer in [TracerKind::Whitted, TracerKind::Path] {
+        passes_come_to_the_same(tracer);
+    }
+}
+
+fn passes_come_to_the_same(tracer: TracerKind) {
+    let world = world(still_life(1.0));
+    let most = ResolvedSettings { samples: u32::MAX, tracer, threads: Some(2), ..settings([40, 30]) };
+    let view = View::new(&still_camera(1.0), most.size).unwrap();
+    let made = ogee::render::tracer(tracer, &world, &view, &most);
+    let cancel = AtomicBool::new(false);
+    let whole = Picture { world: &world, view: &view, tracer: &*made, settings: &most };
+    let mut passes = Passes::new(whole);
+    for n in [2, 4, 6] {
+        assert!(passes.advance(n, &(), &cancel));
+        let fixed = ResolvedSettings { samples: n, ..most };
+        let (film, at_once) = (passes.film(), render(Picture { settings: &fixed, ..whole }, &(), &cancel));
+        assert!(film.is_complete());
+        assert_eq!(bits(&film), bits(&at_once), "{tracer:?}, {n} samples");
+        assert_eq!(film.report, at_once.report);
+    }
+    cancel.store(true, Ordering::Relaxed);
+    assert!(!passes.advance(8, &(), &cancel), "cancelled");
+    assert_eq!(passes.film().share_finished(), 0.0, "none has eight samples");
+}
+
+#[test]
+fn a_picture_by_its_error_depends_on_nothing_but_the_scene() {
+    let world = world(still_life(1.0));
+    let layers = Layer::ALL.into_iter().collect();
+    let by_error = ResolvedSettings {
+        samples: 256,
+        error: Some(0.05),
+        layers,
+        tracer: TracerKind::Path,
+        ..settings([40, 30])
+    };
+    let expected = picture(&world, &still_camera(1.0), &by_error);
+    let taken = expected.report.taken;
+    assert!(expected.is_complete() && taken.pixels == 1200);
+    assert!(taken.least == 32 && taken.most == 256 && taken.enough > 300 && taken.enough < 1200, "{taken:?}");
+    let threads = picture(&world, &still_camera(1.0), &ResolvedSettings { threads: Some(3), ..by_error });
+    assert_eq!((bits(&threads), &threads.report), (bits(&expected), &expected.report));
+    assert!(threads.features == expected.features && threads.sources == expected.sources);
+    let crop = Crop { x: 11, y: 7, width: 17, height: 13 };
+    let part = picture(&world, &still_camera(1.0), &ResolvedSettings { crop, ..by_error });
+    for (x, y) in (0..13).flat_map(|y| (0..17).map(move |x| (x, y))) {
+        assert_eq!(part.pixel(x, y), expected.pixel(x + 11, y + 7));
+    }
+}
+
+#[test]
+fn stopping_by_the_error_moves_the_mean_by_a_fraction_of_that_error() {
+    let world = white_box(0.5);
+    let eye = camera(DVec3::new(0.5, 0.5, 0.98), DVec3::new(0.5, 0.4, 0.0), 60.0);
+    let base = ResolvedSettings { tracer: TracerKind::Path, samples: 1024, ..settings([32, 32]) };
+    let fixed = picture(&world, &eye, &base).mean().x;
+    for error in [0.05, 0.02] {
+        let film =
+            picture(&world, &eye, &ResolvedSettings { error: Some(error), samples: 4096, seed: 1, ..base });
+        let (off, taken) = (film.mean().x / fixed - 1.0, film.report.taken);
+        assert!(taken.enough == 1024 && taken.mean() < 1024.0, "{taken:?}");
+        assert!(off.abs() < 0.3 * error, "{off} at {error}, {taken:?}");
+    }
+}
+
+#[test]
+fn layers_tell_what_the_rays_meet_and_leave_the_picture_as_it_is() {
+    let ball = sphere(DVec3::ZERO, 1.0);
+    let world = world(vec![object(ball, &diffuse(0.3)), sun(-DVec3::Z, 2.0)]);
+    let eye = camera(4.0 * DVec3::Z, DVec3::ZERO, 40.0);
+    let plain = ResolvedSettings { samples: 16, ..settings([33, 33]) };
+    let layers = Layer::ALL.into_iter().collect();
+    let (without, with) =
+        (picture(&world, &eye, &plain), picture(&world, &eye, &ResolvedSettings { layers, ..plain }));
+    assert!(without.features.is_empty());
+    assert_eq!(bits(&without), bits(&with));
+    let (middle, corner) = (with.features[16 * 33 + 16], with.features[0]);
+    near(middle.depth, 3.0, 0.01);
+    near(middle.albedo.y, 0.3, 1e-12);
+    near(middle.normal.z, 1.0, 0.01);
+    near(middle.position.z, 1.0, 0.01);
+    assert_eq!((middle.source, corner.source, corner.albedo), (1, 0, Rgb::ZERO));
+    assert!(corner.depth.is_infinite() && corner.variance == Rgb::ZERO);
+    assert!(with.features.iter().any(|f| f.variance.x > 1e-4), "the outline varies");
 }
 
 #[test]

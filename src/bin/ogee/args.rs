@@ -4,6 +4,7 @@ mod tracers;
 
 use clap::{Args, Parser, Subcommand, ValueEnum, ValueHint};
 use clap_complete::Shell;
+use ogee::render::features::Layer;
 use ogee::scene::{Accelerator, SamplerKind, TracerKind};
 use std::ops::Range;
 use std::path::PathBuf;
@@ -181,15 +182,15 @@ pub struct Render {
     /// Brighten by this many stops
     #[arg(long, value_name = "STOPS", value_parser = finite, allow_negative_numbers = true)]
     pub exposure: Option<f64>,
-    /// Further layers of an EXR picture: depth, normal, …
-    #[arg(long, value_name = "LAYER,…")]
-    pub layers: Option<String>,
-    /// Stop after this time: `30s`
-    #[arg(long, value_name = "TIME")]
-    pub budget: Option<String>,
-    /// Stop where the estimated error is below this
-    #[arg(long, value_name = "RMSE")]
-    pub error: Option<String>,
+    /// Further layers of an EXR picture: `--layers depth,normal`
+    #[arg(long, value_name = "LAYER,…", value_enum, value_delimiter = ',')]
+    pub layers: Vec<LayerName>,
+    /// Take as many samples as this time allows, at most `--samples`: `30s`, `500ms`, `2min`
+    #[arg(long, value_name = "TIME", value_parser = budget, conflicts_with = "error")]
+    pub budget: Option<f64>,
+    /// Finish a pixel where its estimated relative error is this, `0.02`; `--samples` are then the most [default of these: 4096]
+    #[arg(long, value_name = "SHARE", value_parser = positive)]
+    pub error: Option<f64>,
     /// Remove noise from the finished picture
     #[arg(long)]
     pub denoise: bool,
@@ -407,6 +408,31 @@ impl From<Sampler> for SamplerKind {
     }
 }
 
+/// The layers of EXR pictures.
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+#[allow(missing_docs, reason = "named as the members of `ogee::render::features::Layer`")]
+pub enum LayerName {
+    Albedo,
+    Normal,
+    Depth,
+    Position,
+    Variance,
+    Source,
+}
+
+impl From<LayerName> for Layer {
+    fn from(name: LayerName) -> Self {
+        match name {
+            LayerName::Albedo => Layer::Albedo,
+            LayerName::Normal => Layer::Normal,
+            LayerName::Depth => Layer::Depth,
+            LayerName::Position => Layer::Position,
+            LayerName::Variance => Layer::Variance,
+            LayerName::Source => Layer::Source,
+        }
+    }
+}
+
 /// The accelerators by the language's words.
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
 #[value(rename_all = "lower")]
@@ -473,6 +499,23 @@ fn non_negative(text: &str) -> Result<f64, String> {
     finite(text).and_then(|x| if x >= 0.0 { Ok(x) } else { Err("a number of at least 0 is expected".into()) })
 }
 
+fn positive(text: &str) -> Result<f64, String> {
+    finite(text).and_then(|x| if x > 0.0 { Ok(x) } else { Err("a number above 0 is expected".into()) })
+}
+
+/// A time with its unit, in seconds.
+fn budget(text: &str) -> Result<f64, String> {
+    let unit = text.find(|c: char| c.is_ascii_alphabetic()).unwrap_or(text.len());
+    let seconds = match &text[unit..] {
+        "ms" => 1e-3,
+        "s" => 1.0,
+        "min" => 60.0,
+        "h" => 3600.0,
+        _ => return Err("write it with its unit: 500ms, 30s, 2min, 1h".to_owned()),
+    };
+    positive(text[..unit].trim()).map(|n| n * seconds)
+}
+
 fn threads(text: &str) -> Result<usize, String> {
     /// More threads than any machine has gain nothing, and asking for very many exhausts it.
     const MOST: usize = 4096;
@@ -536,6 +579,14 @@ mod tests {
         }
         for empty in ["5..5", "9..3", "9..=3", "4294967295..=3"] {
             assert!(frames(empty).is_err(), "{empty}");
+        }
+    }
+
+    #[test]
+    fn times_have_a_unit() {
+        assert_eq!(["500ms", "30s", "2 min", "1h"].map(budget), [0.5, 30.0, 120.0, 3600.0].map(Ok));
+        for bad in ["", "30", "s", "-1s", "0s", "1e9x", "3 days"] {
+            assert!(budget(bad).is_err(), "{bad}");
         }
     }
 

@@ -21,6 +21,7 @@ fn metadata() -> Metadata {
         seed: 9,
         sampler: "sobol".into(),
         size: [7, 5],
+        ..Metadata::default()
     }
 }
 
@@ -79,6 +80,34 @@ fn exr_keeps_every_bit_of_f32_and_says_how_it_was_made() {
     assert_eq!(own.software_name.as_ref().unwrap().to_string(), "ogee 0.1.0");
     let said: serde_json::Value = serde_json::from_str(&own.comments.as_ref().unwrap().to_string()).unwrap();
     assert_eq!((said["seed"].as_u64(), said["samples"].as_u64()), (Some(9), Some(4)));
+}
+
+#[test]
+fn layers_stand_beside_the_radiance_and_leave_it_as_it_is() {
+    use crate::render::features::{Features, Layer};
+    use exr::prelude::*;
+    let mut film = film();
+    film.features = (0..35)
+        .map(|i| Features {
+            depth: f64::from(i) + 0.5,
+            source: i % 3,
+            normal: glam::DVec3::Y,
+            ..Default::default()
+        })
+        .collect();
+    film.layers = [Layer::Depth, Layer::Normal, Layer::Source].into_iter().collect();
+    let encoded = encode(&film, Format::Exr, &Development::default(), &metadata()).unwrap();
+    let plain = image::load_from_memory(&encoded).unwrap().to_rgb32f();
+    assert!(plain.pixels().zip(&film.pixels).all(|(p, c)| p.0 == c.as_vec3().to_array()));
+    let reader =
+        read().no_deep_data().largest_resolution_level().all_channels().first_valid_layer().all_attributes();
+    let image = reader.from_buffered(Cursor::new(&encoded)).unwrap();
+    let names: Vec<String> = image.layer_data.channel_data.list.iter().map(|c| c.name.to_string()).collect();
+    assert_eq!(names, ["B", "G", "R", "depth.Z", "normal.X", "normal.Y", "normal.Z", "source.id"]);
+    let list = &image.layer_data.channel_data.list;
+    assert_eq!(list[3].sample_data, FlatSamples::F32((0..35).map(|i| i as f32 + 0.5).collect()));
+    assert_eq!(list[5].sample_data, FlatSamples::F32(vec![1.0; 35]));
+    assert_eq!(list[7].sample_data, FlatSamples::U32((0..35).map(|i| i % 3).collect()));
 }
 
 #[test]

@@ -162,6 +162,14 @@ impl Bsdf {
         }
     }
 
+    /// Share of light from all around that is sent on to `wo`, mirrored and let through included; linear RGB, exact for a diffuse base and a
+    /// smooth mirror, and to the width of their lobes for the others.
+    pub fn albedo(&self) -> Rgb {
+        let base = self.diffuse + self.specular + self.transmit;
+        let mirrored = self.mirror_share(self.wo.dot(self.normal));
+        (Rgb::ONE - mirrored) * base + mirrored
+    }
+
     /// True where light that comes from somewhere in particular is sent on: where lights need to be asked at all.
     #[inline]
     pub fn has_base(&self) -> bool {

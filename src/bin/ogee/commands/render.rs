@@ -11,9 +11,12 @@ use crate::interrupt;
 use crate::speech::{Ended, Exit, Failure, data, show, tell, tell_failure};
 use bar::Bar;
 use ogee::diag::Diagnostic;
+use ogee::render::adaptive;
 use ogee::render::film::Film;
 use ogee::render::output::Format;
-use ogee::scene::RenderSettings;
+use ogee::render::passes::{self, Passes};
+use ogee::render::settings::ResolvedSettings;
+use ogee::scene::{RenderSettings, SamplerKind, TracerKind};
 use ogee::session::Evaluated;
 use ogee::session::animation::{Animation, Asked};
 use ogee::session::picture::{self, Job, Prepared};
@@ -72,7 +75,8 @@ fn still(
     let path = target.name.given().to_owned();
     let saving = Arc::new(Saving::at(path, format, &prepared.settings, animation.sources())?);
     let (bar, for_rescue) = (Bar::over(1), Arc::clone(&saving));
-    let film = seconds.render.measure(|| render(&prepared, &bar, move |film| rescue(&for_rescue, film)));
+    let film =
+        seconds.render.measure(|| render(args, &prepared, &bar, move |film| rescue(&for_rescue, film)));
     bar.end();
     let faults = picture::faults(&film);
     show(&faults, animation.sources());
@@ -109,6 +113,7 @@ fn prepare(
     }
     let job = job(args);
     let settings = picture::settings(&evaluated.scene, &job).map_err(Failure::usage)?;
+    refuse_passes(args, &settings)?;
     target.refuse_too_large(&settings, animation.options().limits.memory)?;
     let mut diagnostics = evaluated.diagnostics;
     let (prepared, found) = seconds.world.measure(|| animation.prepare(evaluated.scene, &job, settings));
@@ -120,7 +125,7 @@ fn job(args: &Render) -> Job {
     let overrides = RenderSettings {
         size: args.size,
         tracer: args.tracer.map(Into::into),
-        samples: args.samples,
+        samples: args.samples.or(most_samples(args)),
         depth: args.depth,
         seed: args.seed,
         sampler: args.sampler.map(Into::into),
@@ -128,32 +133,76 @@ fn job(args: &Render) -> Job {
         exposure: args.exposure,
         ..RenderSettings::default()
     };
-    Job { overrides, camera: args.camera.clone(), crop: args.crop, threads: args.threads }
+    Job {
+        overrides,
+        camera: args.camera.clone(),
+        crop: args.crop,
+        error: args.error,
+        layers: args.layers.iter().map(|layer| (*layer).into()).collect(),
+        threads: args.threads,
+    }
+}
+
+/// Samples a pixel where it is not said how many, and time or an error decides.
+fn most_samples(args: &Render) -> Option<u32> {
+    args.error.map(|_| adaptive::MOST).or(args.budget.map(|_| u32::MAX))
 }
 
 /// Renders; `rescue` is what is done with the picture so far where a ray does not come back.
-fn render(prepared: &Prepared, bar: &Bar, rescue: impl FnOnce(&Film) + Send + 'static) -> Film {
+fn render(
+    args: &Render,
+    prepared: &Prepared,
+    bar: &Bar,
+    rescue: impl FnOnce(&Film) + Send + 'static,
+) -> Film {
     let film = Arc::new(Mutex::new(prepared.bare_film()));
     let rescue = {
         let film = Arc::clone(&film);
         move || rescue(&film.lock().unwrap_or_else(|poisoned| poisoned.into_inner()))
     };
-    interrupt::while_rendering(rescue, || prepared.render_onto(&film, bar, &interrupt::CANCEL));
+    let passes = args.budget.zip(prepared.passes());
+    interrupt::while_rendering(rescue, || match passes {
+        Some((seconds, passes)) => within(seconds, passes, prepared.settings.samples, &film, bar),
+        None => prepared.render_onto(&film, bar, &interrupt::CANCEL),
+    });
     let film = Arc::into_inner(film).expect("who would have saved it is gone");
     film.into_inner().unwrap_or_else(|poisoned| poisoned.into_inner())
 }
 
-fn refuse_unbuilt(args: &Render) -> Result<(), Failure> {
-    let asked = [
-        ("--layers", args.layers.is_some()),
-        ("--budget", args.budget.is_some()),
-        ("--error", args.error.is_some()),
-        ("--denoise", args.denoise),
-    ];
-    match asked.iter().find(|(_, given)| *given) {
-        Some((flag, _)) => Err(Failure::not_built(&format!("`{flag}`"))),
-        None => Ok(()),
+/// Takes samples for so many seconds, at most `most` a pixel. The first pass is made in any case; a pass that is interrupted leaves the one before.
+fn within(budget: f64, mut passes: Passes<'_>, most: u32, film: &Mutex<Film>, bar: &Bar) {
+    let start = Instant::now();
+    let mut to = Some(passes::FIRST);
+    while let Some(n) = to {
+        let is_whole = passes.advance(n, bar, &interrupt::CANCEL);
+        if is_whole || n == passes::FIRST {
+            *film.lock().unwrap_or_else(|poisoned| poisoned.into_inner()) = passes.film();
+        }
+        let used = start.elapsed().as_secs_f64();
+        to = passes::next(n, used, budget - used, most).filter(|_| is_whole);
     }
+}
+
+/// What a budget cannot be kept with.
+fn refuse_passes(args: &Render, settings: &ResolvedSettings) -> Result<(), Failure> {
+    let fault = match (settings.tracer, settings.sampler) {
+        _ if args.budget.is_none() => return Ok(()),
+        (TracerKind::Photon | TracerKind::Irradiance, _) => {
+            "`--budget` goes on with more samples, and this tracer prepares for a number of them; try `--tracer path`"
+        }
+        (_, SamplerKind::Stratified) => {
+            "`--budget` goes on with more samples, and `stratified` needs their number; try `--sampler sobol`"
+        }
+        _ if settings.samples < passes::FIRST => {
+            "`--budget` begins with 2 samples a pixel, and `--samples 1` are the most"
+        }
+        _ => return Ok(()),
+    };
+    Err(Failure::usage(fault))
+}
+
+fn refuse_unbuilt(args: &Render) -> Result<(), Failure> {
+    if args.denoise { Err(Failure::not_built("`--denoise`")) } else { Ok(()) }
 }
 
 /// Time that a part of the work took.

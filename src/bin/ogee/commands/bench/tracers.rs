@@ -77,7 +77,7 @@ fn of_scene(args: &Tracers, path: &Path) -> Result<Result<Vec<TracerRow>, Exit>,
 fn job(args: &Tracers, written: Option<[u32; 2]>) -> Job {
     let size = args.size.unwrap_or_else(|| small(written.unwrap_or(ResolvedSettings::SIZE)));
     let overrides = RenderSettings { size: Some(size), depth: args.depth, ..RenderSettings::default() };
-    Job { overrides, camera: args.camera.clone(), crop: None, threads: Some(args.threads.unwrap_or(1)) }
+    Job { overrides, camera: args.camera.clone(), threads: Some(args.threads.unwrap_or(1)), ..Job::default() }
 }
 
 /// A size of the same shape with no side longer than [`LONGER_SIDE`].

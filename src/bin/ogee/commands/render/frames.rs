@@ -7,7 +7,7 @@ use crate::args::Render;
 use crate::interrupt::CANCEL;
 use crate::speech::{Ended, Exit, Failure, data, show, tell, tell_failure};
 use ogee::diag::{Diagnostic, Severity};
-use ogee::render::film::Film;
+use ogee::render::film::{Film, Taken};
 use ogee::render::output::Format;
 use ogee::render::output::movie::Movie;
 use ogee::render::settings::ResolvedSettings;
@@ -78,6 +78,7 @@ struct Reel<'r, 'a> {
 struct Total {
     frames: usize,
     rays: u64,
+    taken: Taken,
     settings: Option<ResolvedSettings>,
     faulty: bool,
     seconds: Seconds,
@@ -111,7 +112,7 @@ impl Reel<'_, '_> {
         self.say(frame, diagnostics);
         let Some(prepared) = prepared else { return Ok(Some(Exit::Scene)) };
         let left = self.left_undone(frame);
-        let film = seconds.render.measure(|| render(&prepared, &self.bar, left));
+        let film = seconds.render.measure(|| render(self.args, &prepared, &self.bar, left));
         if !film.is_complete() {
             return Ok(Some(Exit::Interrupted));
         }
@@ -160,6 +161,7 @@ impl Reel<'_, '_> {
         let total = &mut self.total;
         total.frames += 1;
         total.rays += film.report.rays.total();
+        total.taken.merge(film.report.taken);
         total.settings = Some(prepared.settings);
         total.seconds.add(seconds);
         if self.args.stats.is_some() {
@@ -206,7 +208,7 @@ impl Total {
             n => format!("  ({n} were there)"),
         };
         let made = self.settings.map_or(String::new(), |settings| {
-            format!("  {}", stats::made(&settings, self.rays, &self.seconds))
+            format!("  {}", stats::made(&settings, self.taken, self.rays, &self.seconds))
         });
         format!("{name}  {}{part}{made}{there}", frames(self.frames))
     }

@@ -5,9 +5,10 @@ use crate::args::Render;
 use crate::place::Place;
 use crate::speech::{Exit, Failure};
 use ogee::diag::SourceMap;
+use ogee::render::features::{Layer, Source};
 use ogee::render::film::Film;
 use ogee::render::output::movie::{Movie, MovieFormat};
-use ogee::render::output::{self, Development, Format, Metadata};
+use ogee::render::output::{self, Development, Format, Metadata, Origin};
 use ogee::render::settings::ResolvedSettings;
 use std::io::IsTerminal;
 use std::ops::Range;
@@ -53,6 +54,11 @@ impl Target {
             let message = format!("{}: a file for each frame is .png, .jpg, .hdr or .exr", given.display());
             return Err(Failure::usage(message));
         }
+        if !args.layers.is_empty() && form != Form::Still(Format::Exr) {
+            let message =
+                format!("{}: only .exr pictures have layers; write `-o picture.exr`", given.display());
+            return Err(Failure::usage(message));
+        }
         if args.resume && !name.is_numbered() {
             let message = "`--resume` looks for a file for each frame: write `-o walk-{frame:04}.png`";
             return Err(Failure::usage(message));
@@ -89,15 +95,19 @@ impl Target {
     pub fn refuse_too_large(&self, settings: &ResolvedSettings, memory: u64) -> Result<(), Failure> {
         /// Three f64 of the film, its flag, and the encoder's copy in f32.
         const BYTES_A_PIXEL: u64 = 24 + 1 + 16;
+        /// What is kept of a pixel for layers, and their encoder's copy.
+        const BYTES_OF_LAYERS: u64 = 112 + 56;
+        let of_layers = if settings.layers.is_empty() { 0 } else { BYTES_OF_LAYERS };
+        let a_pixel = BYTES_A_PIXEL + of_layers;
         let [w, h] = settings.size;
         let pixels = u64::from(settings.crop.width) * u64::from(settings.crop.height);
-        if pixels.saturating_mul(BYTES_A_PIXEL) > memory {
+        if pixels.saturating_mul(a_pixel) > memory {
             return Err(Failure {
                 exit: Exit::Scene,
                 message: format!(
                     "a picture of {w}×{h} pixels needs {} MiB, the guard `memory` allows {}\n\
                      raise it with `--limit memory=BYTES`, or render a part with `--crop`",
-                    (pixels * BYTES_A_PIXEL) >> 20,
+                    (pixels * a_pixel) >> 20,
                     memory >> 20
                 ),
             });
@@ -124,6 +134,8 @@ pub struct Saving {
     format: Format,
     develop: Development,
     about: Metadata,
+    /// For the objects of the layer `source`.
+    sources: SourceMap,
 }
 
 impl Saving {
@@ -139,13 +151,33 @@ impl Saving {
             Format::Png | Format::Jpeg | Format::Hdr => Metadata::default(),
         };
         let place = Place::try_at(&path)?;
-        Ok(Saving { path, place, format, develop: development(settings), about })
+        let sources = match settings.layers.has(Layer::Source) {
+            true => sources.clone(),
+            false => SourceMap::default(),
+        };
+        Ok(Saving { path, place, format, develop: development(settings), about, sources })
     }
 
     /// Writes it.
     pub fn save(&self, film: &Film) -> Result<(), Failure> {
-        let bytes = output::encode(film, self.format, &self.develop, &self.about);
+        let about = Metadata { sources: self.origins(film), ..self.about.clone() };
+        let about = Metadata { samples: samples(&about, film), ..about };
+        let bytes = output::encode(film, self.format, &self.develop, &about);
         self.place.write(&bytes.map_err(|fault| cannot_write(&self.path, fault))?)
+    }
+
+    /// Where the objects of the layer `source` stand in the scene's text.
+    fn origins(&self, film: &Film) -> Vec<Origin> {
+        let origin = |(number, source): (u32, &Source)| {
+            let file = Path::new(self.sources.name(source.span.source)).file_name();
+            Origin {
+                number,
+                file: file.map_or(String::new(), |name| name.to_string_lossy().into_owned()),
+                line: self.sources.line_column(source.span.source, source.span.start).line,
+                name: source.name.as_deref().map(str::to_owned),
+            }
+        };
+        (1..).zip(&film.sources).map(origin).collect()
     }
 
     /// Its name, for messages.
@@ -183,6 +215,16 @@ fn metadata(settings: &ResolvedSettings, sources: &SourceMap) -> Metadata {
         seed: settings.seed,
         sampler: settings.sampler.word().to_owned(),
         size: settings.size,
+        error: settings.error,
+        ..Metadata::default()
+    }
+}
+
+/// Samples with which the picture can be made again: those that were taken, or the most where an error decided.
+fn samples(about: &Metadata, film: &Film) -> u32 {
+    match about.error {
+        None if film.report.taken.pixels > 0 => film.report.taken.most,
+        _ => about.samples,
     }
 }
 

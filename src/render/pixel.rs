@@ -1,0 +1,133 @@
+//! One pixel on the way: camera samples taken one after another, by number. What n samples come to does not depend on how often it was paused, nor on
+//! who took them.
+
+use super::adaptive::Blocks;
+use super::camera::View;
+use super::features::{FeatureSum, Layers};
+use super::film::{Fault, Film, PixelSum, Report};
+use super::sampler::Sampler;
+use super::settings::ResolvedSettings;
+use super::tiles::Picture;
+use crate::diag::Span;
+use crate::scene::Rgb;
+use crate::world::texture::TextureFault;
+use crate::world::{Ray, World};
+use glam::DVec2;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// The samples of a pixel so far.
+#[derive(Clone, Debug)]
+pub struct Pixel {
+    place: [u32; 2],
+    sum: PixelSum,
+    /// How many samples were taken.
+    pub taken: u32,
+    /// True where its estimated error is as small as asked for.
+    pub enough: bool,
+    undefined: Option<TextureFault>,
+    /// What is kept beside radiance, where something is.
+    pub features: Option<Box<FeatureSum>>,
+}
+
+impl Pixel {
+    /// The pixel in a column and row of the whole picture, without a sample.
+    pub fn new(place: [u32; 2], kept: Layers) -> Pixel {
+        let features = (!kept.is_empty()).then(Box::default);
+        let sum = PixelSum::default();
+        Pixel { place, sum, taken: 0, enough: false, undefined: None, features }
+    }
+
+    /// Takes the samples up to number `to`; false where that was cancelled.
+    pub fn advance(
+        &mut self,
+        picture: Picture<'_>,
+        to: u32,
+        report: &mut Report,
+        cancel: &AtomicBool,
+    ) -> bool {
+        while self.taken < to {
+            if cancel.load(Ordering::Relaxed) {
+                return false;
+            }
+            self.take(picture, report);
+        }
+        true
+    }
+
+    /// Takes samples until the error is as small as `target`, or there are as many as the settings allow; false where that was cancelled.
+    pub fn settle(
+        &mut self,
+        picture: Picture<'_>,
+        target: f64,
+        report: &mut Report,
+        cancel: &AtomicBool,
+    ) -> bool {
+        let mut blocks = Blocks::default();
+        while self.taken < picture.settings.samples {
+            if cancel.load(Ordering::Relaxed) {
+                return false;
+            }
+            blocks.add(self.take(picture, report));
+            self.enough = blocks.error(picture.settings.exposure).is_some_and(|error| error <= target);
+            if self.enough {
+                break;
+            }
+        }
+        true
+    }
+
+    /// Takes the next sample.
+    fn take(&mut self, picture: Picture<'_>, report: &mut Report) -> Rgb {
+        let ResolvedSettings { seed, sampler: kind, samples, .. } = *picture.settings;
+        let [x, y] = self.place;
+        let mut sampler = Sampler::new(seed, x, y, self.taken).of_kind(kind, samples);
+        let ray = camera_ray(picture, self.place, &mut sampler);
+        let radiance = match ray {
+            Some(ray) => picture.tracer.radiance(picture.world, ray, &mut sampler),
+            None => Rgb::ZERO,
+        };
+        let before = self.sum.non_finite;
+        self.sum.add(radiance);
+        if let (true, Some(ray)) = (self.sum.non_finite > before, ray) {
+            note_non_finite(picture.world, ray, self.place, report);
+        }
+        if let Some(features) = &mut self.features {
+            features.add(picture.settings.layers, picture.world, ray.as_ref(), radiance);
+        }
+        self.undefined = self.undefined.or(sampler.undefined);
+        report.rays += sampler.rays;
+        self.taken += 1;
+        radiance
+    }
+
+    /// The mean radiance; magenta, which is told, where a function was undefined.
+    pub fn radiance(&self, report: &mut Report) -> Rgb {
+        let Some(fault) = self.undefined else { return self.sum.mean() };
+        let (span, kind) = (Some(fault.span), Some(fault.kind));
+        report.add_undefined(Fault { pixel: self.place, count: 1, span, kind });
+        Film::UNDEFINED
+    }
+}
+
+/// The ray of a sample: through the pixel's centre for the only one, else through a point of its square.
+fn camera_ray(picture: Picture<'_>, pixel: [u32; 2], sampler: &mut Sampler) -> Option<Ray> {
+    let corner = DVec2::new(f64::from(pixel[0]), f64::from(pixel[1]));
+    let within = if picture.settings.samples == 1 { DVec2::splat(0.5) } else { sampler.next_2d() };
+    let view: &View = picture.view;
+    let lens = if view.has_lens() { sampler.next_2d() } else { DVec2::ZERO };
+    view.ray(corner + within, lens)
+}
+
+/// Counts a sample that was not finite, and finds out whose it was by asking again what the camera's ray meets.
+fn note_non_finite(world: &World, ray: Ray, pixel: [u32; 2], report: &mut Report) {
+    report.non_finite += 1;
+    match &mut report.first_non_finite {
+        None => report.first_non_finite = Some(Fault { pixel, count: 1, span: seen(world, ray), kind: None }),
+        Some(first) => first.count += 1,
+    }
+}
+
+fn seen(world: &World, ray: Ray) -> Option<Span> {
+    let hit = world.closest(&ray)?;
+    world.provenance(hit.primitive).map(|p| p.span)
+}
