@@ -175,6 +175,25 @@ pub(super) struct Part {
     depth: u32,
 }
 
+/// What splitting a part costs, in tests of items that come with it or go.
+#[derive(Clone, Copy)]
+pub(super) enum Price {
+    /// A node of its own, tested by every ray that meets the part.
+    Node(f32),
+    /// A child more of a node that has one to spare: all boxes of a node are tested at once, so only who meets a half pays for visiting it.
+    Lane(f32),
+}
+
+impl Price {
+    /// By the area of the part and of both halves together.
+    fn of(self, area: f32, halves: f32) -> f32 {
+        match self {
+            Price::Node(cost) => cost * area,
+            Price::Lane(cost) => cost * (halves - area),
+        }
+    }
+}
+
 /// Most items that a leaf may have; the heuristic usually stops earlier.
 pub(super) const MAX_LEAF: usize = 8;
 /// Binary splits after which halves are taken, so that no input makes a deep tree (a fan of needles would).
@@ -192,8 +211,8 @@ impl Part {
         Part { len, ..self }
     }
 
-    /// Two halves, the run partitioned; none where a leaf is cheaper. `cost` is that of the split itself.
-    pub fn split<T: Boxed>(&self, run: &mut [T], cost: f32, bins: &mut Bins) -> Option<[Part; 2]> {
+    /// Two halves, the run partitioned; none where a leaf is cheaper.
+    pub fn split<T: Boxed>(&self, run: &mut [T], price: Price, bins: &mut Bins) -> Option<[Part; 2]> {
         if run.len() < 2 {
             return None;
         }
@@ -201,7 +220,10 @@ impl Part {
         let (len, bounds) = match found {
             Some(best) => {
                 let area = self.bounds.area();
-                if self.n_items <= MAX_LEAF && self.n_items as f32 * area <= cost * area + best.cost {
+                let halves = best.bounds[0].area() + best.bounds[1].area();
+                if self.n_items <= MAX_LEAF
+                    && self.n_items as f32 * area <= best.cost + price.of(area, halves)
+                {
                     return None;
                 }
                 (best.partition(run), best.bounds)
