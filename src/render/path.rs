@@ -48,6 +48,9 @@ pub struct Path {
 /// Branches of `montecarlo`. A power of two, so that the points of a surface's ways are even.
 const BRANCHES: u32 = 4;
 
+/// In place of a number of chance where there is nothing to choose.
+const CERTAIN: f64 = 0.5;
+
 /// Paths end by chance from this segment on.
 const FIRST_ROULETTE: u32 = 5;
 
@@ -239,13 +242,15 @@ impl Path {
         if spreads && !self.lights.lights.is_empty() {
             let places = walk.sampler.next_set();
             for i in 0..n {
-                let u = (which.point(i, n).y, places.point(i, n));
+                let light = if self.choice.is_certain() { CERTAIN } else { which.point(i, n).y };
+                let u = (light, places.point(i, n));
                 let asked = self.asked(world, hit, (bsdf, odds), u, walk.sampler)?;
                 walk.sum += walk.weight * asked / f64::from(n);
             }
         }
         let ways = walk.sampler.next_set();
-        let way = |i| bsdf.bounce(odds, which.point(i, n).x, ways.point(i, n));
+        let lobe = |i| if odds.are_certain() { CERTAIN } else { which.point(i, n).x };
+        let way = |i| bsdf.bounce(odds, lobe(i), ways.point(i, n));
         if n == 1 {
             let Some(bounce) = way(0) else { return Ok(false) };
             if self.is_known(world, hit, bsdf, walk) {

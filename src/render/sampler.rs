@@ -123,7 +123,8 @@ impl PointSet {
         match self.kind {
             SamplerKind::Sobol => {
                 let (x, y) = sobol(owen(index, self.order));
-                DVec2::new(unit(owen(x, self.scramble as u32)), unit(owen(y, (self.scramble >> 32) as u32)))
+                let (x, y) = owen_both(x, y, self.scramble);
+                DVec2::new(unit(x), unit(y))
             }
             SamplerKind::Stratified => self.in_cell(index, self.samples.saturating_mul(n)),
             SamplerKind::Independent => self.anywhere(index),
@@ -182,13 +183,27 @@ fn unit(x: u32) -> f64 {
 
 /// Nested uniform scrambling of a binary fraction: each bit is flipped or not by a hash of the bits above it.
 fn owen(x: u32, seed: u32) -> u32 {
-    let mut x = x.reverse_bits();
+    owen_reversed(x.reverse_bits(), seed).reverse_bits()
+}
+
+/// Of two, by the halves of a seed: both are turned round at once.
+fn owen_both(x: u32, y: u32, seed: u64) -> (u32, u32) {
+    let reversed = (u64::from(x) << 32 | u64::from(y)).reverse_bits();
+    let (x, y) = (
+        owen_reversed(reversed as u32, seed as u32),
+        owen_reversed((reversed >> 32) as u32, (seed >> 32) as u32),
+    );
+    let back = (u64::from(x) << 32 | u64::from(y)).reverse_bits();
+    (back as u32, (back >> 32) as u32)
+}
+
+/// The same of a fraction whose first bit is its lowest.
+fn owen_reversed(mut x: u32, seed: u32) -> u32 {
     x ^= x.wrapping_mul(0x3d20_adea);
     x = x.wrapping_add(seed);
     x = x.wrapping_mul((seed >> 16) | 1);
     x ^= x.wrapping_mul(0x0552_6c56);
-    x ^= x.wrapping_mul(0x53a2_2864);
-    x.reverse_bits()
+    x ^ x.wrapping_mul(0x53a2_2864)
 }
 
 /// Point `index` of the 2-D Sobol sequence as binary fractions: van der Corput's, and Pascal's matrix modulo 2 applied to it.

@@ -36,6 +36,13 @@ pub struct Odds {
     through: f64,
 }
 
+impl Odds {
+    /// Whether one way is chosen always.
+    pub fn are_certain(&self) -> bool {
+        [self.diffuse, self.specular, self.mirror, self.through].contains(&1.0)
+    }
+}
+
 impl Bsdf {
     /// True where light is sent on from more directions than one: where lights need to be asked.
     #[inline]
@@ -106,6 +113,13 @@ impl Bsdf {
 
     /// By what each would send on if light came evenly from everywhere. Asked once a surface: they take the mirror's share.
     pub fn odds(&self) -> Odds {
+        if matches!(self.mirror, Mirror::None)
+            && self.diffuse != Rgb::ZERO
+            && self.specular == Rgb::ZERO
+            && self.transmit == Rgb::ZERO
+        {
+            return Odds { diffuse: 1.0, specular: 0.0, mirror: 0.0, through: 0.0 };
+        }
         let share = match self.mirror {
             Mirror::None => Rgb::ZERO,
             _ => self.mirror_share(self.wo.dot(self.normal)),

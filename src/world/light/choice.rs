@@ -26,6 +26,11 @@ impl Choice {
         Choice { sums: sums.collect() }
     }
 
+    /// Whether there is one light to choose at most.
+    pub fn is_certain(&self) -> bool {
+        self.sums.len() < 2
+    }
+
     /// The light that u in (0, 1) falls on, and how often it is chosen. None where there is no light.
     pub fn pick(&self, u: f64) -> Option<(usize, f64)> {
         let last = self.sums.len().checked_sub(1)?;
