@@ -160,7 +160,7 @@ fn render(
         let film = Arc::clone(&film);
         move || rescue(&film.lock().unwrap_or_else(|poisoned| poisoned.into_inner()))
     };
-    let passes = args.budget.zip(prepared.passes());
+    let passes = args.budget.and_then(|seconds| Some((seconds, prepared.passes()?)));
     interrupt::while_rendering(rescue, || match passes {
         Some((seconds, passes)) => within(seconds, passes, prepared.settings.samples, &film, bar),
         None => prepared.render_onto(&film, bar, &interrupt::CANCEL),
