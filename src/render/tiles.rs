@@ -133,7 +133,7 @@ impl Tile {
     }
 
     /// What there is of the picture; pixels with fewer than `to` samples are not finished, unless they have enough.
-    pub fn film(self: &Tile, settings: &ResolvedSettings, to: u32) -> Film {
+    pub fn film(&self, settings: &ResolvedSettings, to: u32) -> Film {
         let mut film = Film::new(settings.size, self.crop);
         film.layers = settings.layers;
         film.report = self.report.clone();

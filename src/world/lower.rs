@@ -13,6 +13,7 @@ mod views;
 
 use super::aggregate::{Aggregate, Group, INHERITED, Instance, Item, Scope};
 use super::bvh::Tree;
+use super::kept::Content;
 use super::shape::{self, EVERYTHING};
 use super::{Kept, World, WorldOptions};
 use crate::diag::{Code, Diagnostic, Sink, Span};
@@ -23,6 +24,7 @@ use meshes::Meshes;
 use models::Models;
 use skins::Skins;
 use solids::Solids;
+use std::any::Any;
 use std::collections::HashMap;
 use std::sync::Arc;
 use surfaces::{Drawn, Surfaces};
@@ -217,6 +219,20 @@ impl Lowering<'_> {
         group.number(&self.aggregates);
         self.plant(&mut group);
         group
+    }
+
+    /// What was made of this content, in this world or the one before, or what is made now.
+    fn once<T: Any + Send + Sync>(
+        &mut self,
+        content: Option<Content>,
+        make: impl FnOnce(&mut Self) -> Option<Arc<T>>,
+    ) -> Option<Arc<T>> {
+        if let Some(known) = self.kept.made(content.as_ref()) {
+            return Some(known);
+        }
+        let made = make(self)?;
+        self.kept.keep(content, &made);
+        Some(made)
     }
 
     /// Builds the tree.

@@ -123,8 +123,11 @@ impl Content {
             Surface::Patch(PatchSource { net, method, tolerance }) => {
                 self.word(0);
                 match net {
-                    PatchNet::Inline(patch) => self.patch(patch),
-                    PatchNet::File { path, .. } => self.path(path),
+                    PatchNet::Inline(patch) => self.maybe(Some(patch), Content::patch),
+                    PatchNet::File { path, .. } => {
+                        self.word(0);
+                        self.path(path);
+                    }
                 }
                 self.word(usize::from(*method == Some(PatchMethod::Direct)));
                 self.maybe(*tolerance, Content::number);

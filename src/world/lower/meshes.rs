@@ -50,14 +50,7 @@ impl Lowering<'_> {
         content: Option<Content>,
         make: impl FnOnce(&mut Self) -> Option<Arc<MeshShape>>,
     ) -> Option<u32> {
-        let shape = match self.kept.made(content.as_ref()) {
-            Some(known) => known,
-            None => {
-                let shape = make(self)?;
-                self.kept.keep(content, &shape);
-                shape
-            }
-        };
+        let shape = self.once(content, make)?;
         Some(self.keep_shape(shape, Vec::new()))
     }
 

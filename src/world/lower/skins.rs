@@ -65,14 +65,8 @@ impl Lowering<'_> {
             let views = views.as_ref().filter(|_| matches!(skin.surface, SkinSurface::Curved(_)));
             content.maybe(views, |content, views| views.write(content));
         });
-        let made = match self.kept.made::<Bent>(content.as_ref()) {
-            Some(known) => Some(known),
-            None => self.bent(skin, views, span).map(Arc::new),
-        };
-        let index = made.map(|bent| {
-            self.kept.keep(content, &bent);
-            self.keep_shape(Arc::clone(&bent.shape), bent.materials.clone())
-        });
+        let made = self.once(content, |lowering| lowering.bent(skin, views, span).map(Arc::new));
+        let index = made.map(|bent| self.keep_shape(Arc::clone(&bent.shape), bent.materials.clone()));
         self.skins.0.insert(Arc::as_ptr(skin), (index, Arc::clone(skin)));
         index
     }

@@ -88,12 +88,7 @@ impl Lowering<'_> {
     /// A surface along curves, ready for rays.
     fn swept(&mut self, source: &Surface, span: Span) -> Option<Arc<Swept>> {
         let content = self.kept.content(Of::Swept, |content| content.surface(source));
-        if let Some(known) = self.kept.made(content.as_ref()) {
-            return Some(known);
-        }
-        let swept = Arc::new(Swept::new(self.form(source, span)?));
-        self.kept.keep(content, &swept);
-        Some(swept)
+        self.once(content, |lowering| Some(Arc::new(Swept::new(lowering.form(source, span)?))))
     }
 
     /// The kernel of a surface along curves; says why there is none.
