@@ -48,22 +48,12 @@ fn closed_rooms_are_as_bright_as_their_series() {
 
 #[test]
 fn a_lamp_in_a_sphere_lights_all_of_it_anew_without_a_bias_of_the_nearest() {
-    let room = world(vec![object(sphere(DVec3::ZERO, 1.0), &diffuse(0.8)), point(0.5 * X, 1.0)]);
-    for (p, exact) in [(X, 2.037183), (-X, 1.131768), (Y, 1.200803)] {
-        agrees(&room, DVec3::new(0.0, 0.0, 0.2), p, exact);
-    }
-    let centred = world(vec![object(sphere(DVec3::ZERO, 1.0), &diffuse(0.5)), point(DVec3::ZERO, 1.0)]);
-    agrees(&centred, 0.2 * Z, X, 1.0 / PI);
+    a_lamp_in_a_sphere(agrees);
 }
 
 #[test]
 fn spheres_in_one_another_light_each_other() {
-    let world = world(vec![
-        object(sphere(DVec3::ZERO, 0.5), &glowing_and(1.0, 0.5)),
-        object(sphere(DVec3::ZERO, 1.0), &diffuse(0.8)),
-    ]);
-    agrees(&world, 0.8 * X, DVec3::ZERO, 4.0 / 3.0);
-    agrees(&world, 0.8 * X, X, 2.0 / 3.0);
+    spheres_in_one_another(agrees);
 }
 
 #[test]

@@ -211,3 +211,24 @@ pub fn seen(world: &World, origin: DVec3, toward: DVec3) -> f64 {
 pub fn near(found: f64, exact: f64, tolerance: f64) {
     assert!((found - exact).abs() <= tolerance, "{found}, not {exact} ± {tolerance}");
 }
+
+/// Asks for the radiance of closed forms in spheres with a lamp inside: the world, from where, what is looked at, and how bright it is.
+pub fn a_lamp_in_a_sphere(agrees: impl Fn(&World, DVec3, DVec3, f64)) {
+    let (x, y, z) = (DVec3::X, DVec3::Y, DVec3::Z);
+    let room = world(vec![object(sphere(DVec3::ZERO, 1.0), &diffuse(0.8)), point(0.5 * x, 1.0)]);
+    for (p, exact) in [(x, 2.037183), (-x, 1.131768), (y, 1.200803)] {
+        agrees(&room, DVec3::new(0.0, 0.0, 0.2), p, exact);
+    }
+    let centred = world(vec![object(sphere(DVec3::ZERO, 1.0), &diffuse(0.5)), point(DVec3::ZERO, 1.0)]);
+    agrees(&centred, 0.2 * z, x, 1.0 / std::f64::consts::PI);
+}
+
+/// The same of a glowing sphere within a matt one.
+pub fn spheres_in_one_another(agrees: impl Fn(&World, DVec3, DVec3, f64)) {
+    let world = world(vec![
+        object(sphere(DVec3::ZERO, 0.5), &glowing_and(1.0, 0.5)),
+        object(sphere(DVec3::ZERO, 1.0), &diffuse(0.8)),
+    ]);
+    agrees(&world, 0.8 * DVec3::X, DVec3::ZERO, 4.0 / 3.0);
+    agrees(&world, 0.8 * DVec3::X, DVec3::X, 2.0 / 3.0);
+}
