@@ -197,3 +197,15 @@ fn what_cannot_be_measured_of_tracers_is_told() {
     let run = folder.ogee("bench tracers room.scene --reference r.exr").expect(1);
     assert!(run.stderr.contains("it has 8 × 4 pixels and the pictures 128 × 64"), "{}", run.stderr);
 }
+
+#[test]
+fn tracers_are_measured_with_the_depth_that_the_scene_says() {
+    let text = SMALL_ROOM.replace("size 200, 100", "size 200, 100  depth 1");
+    let folder = Folder::with(&[("room.scene", &text)]);
+    folder
+        .ogee("bench tracers room.scene --size 12x6 --samples 4 --seeds 2 --variants path --reference-samples 2")
+        .expect(0);
+    let results = String::from_utf8(folder.read("report-tracers/results/room.jsonl")).unwrap();
+    let (_, rows) = store::read::<TracerRow>(&results).unwrap();
+    assert_eq!(rows[0].rays, f64::from(12 * 6 * 4), "a camera ray a sample and no other: {rows:?}");
+}

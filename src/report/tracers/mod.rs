@@ -93,7 +93,7 @@ pub struct TracerRow {
     /// Mean squared distance of the mean of all seeds from the reference, less what its noise and the reference's add to it. Below 0
     /// only by chance.
     pub bias2: f64,
-    /// How much brighter the mean picture is than the reference, as a part of it.
+    /// How much brighter the mean picture is than the reference, as a part of it; 0 where that is black.
     pub mean_off: f64,
     /// Half of the 95 % interval of that.
     pub mean_off_by: f64,

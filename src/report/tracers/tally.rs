@@ -67,6 +67,7 @@ impl<'a> Tally<'a> {
         let variance = (mean_square - square_of_mean) * n / (n - 1.0);
         let (mean_off, deviation) = mean_and_deviation(&self.means);
         let bright = self.reference.iter().map(|rgb| rgb.element_sum()).sum::<f64>() / values;
+        let part = |off: f64| if bright > 0.0 { off / bright } else { 0.0 };
         TracerRow {
             seeds: self.means.len() as u32,
             seconds: median(&self.seconds),
@@ -76,10 +77,11 @@ impl<'a> Tally<'a> {
             p999: quantile(&self.errors, 0.999),
             variance,
             bias2: square_of_mean - variance / n - floor * floor,
-            mean_off: mean_off / bright,
-            mean_off_by: student(0.05, self.means.len() as u32 - 1)
-                * (deviation * deviation / n + floor * floor / values).sqrt()
-                / bright,
+            mean_off: part(mean_off),
+            mean_off_by: part(
+                student(0.05, self.means.len() as u32 - 1)
+                    * (deviation * deviation / n + floor * floor / values).sqrt(),
+            ),
             ..TracerRow::default()
         }
     }

@@ -36,9 +36,7 @@ fn kernels(args: &Kernels) -> Ended {
         let all = names().collect::<Vec<_>>().join(", ");
         return Err(Failure::usage(format!("there is no component `{unknown}`\n{near}there are {all}")));
     }
-    let results = args.out.join("results");
-    std::fs::create_dir_all(&results)
-        .map_err(|error| Failure::machine(format!("cannot make {}", results.display()), reason(&error)))?;
+    make_results(&args.out)?;
     let (mode, plan) = if args.full { ("full", Plan::full()) } else { ("quick", Plan::quick()) };
     let machine = machine(mode);
     let rows = measure(&plan, &args.only, |name| tell(format!("measuring {name}")));
@@ -58,6 +56,13 @@ fn kernels(args: &Kernels) -> Ended {
         ));
     }
     Ok(if broken.is_empty() { Exit::Done } else { Exit::Scene })
+}
+
+/// Makes a report's folder for results, and the folders around it.
+fn make_results(report: &Path) -> Result<(), Failure> {
+    let results = report.join("results");
+    std::fs::create_dir_all(&results)
+        .map_err(|error| Failure::machine(format!("cannot make {}", results.display()), reason(&error)))
 }
 
 fn write(folder: &Path, pages: &[Page]) -> Result<(), Failure> {

@@ -1,13 +1,13 @@
 //! `ogee bench tracers`: tracers against one another on scenes.
 
-use super::{machine, write};
+use super::{machine, make_results, write};
 use crate::args::Tracers;
 use crate::commands;
 use crate::interrupt;
 use crate::speech::{Ended, Exit, Failure, reason, show, tell};
 use ogee::render::compare::Picture;
 use ogee::render::film::Film;
-use ogee::render::settings::{Crop, ResolvedSettings};
+use ogee::render::settings::ResolvedSettings;
 use ogee::report::store;
 use ogee::report::tracers::{Ask, Made, Plan, Reference, TracerRow, Variant, measure, page};
 use ogee::scene::{RenderSettings, Rgb, SamplerKind, TracerKind};
@@ -30,9 +30,7 @@ pub fn run(args: &Tracers) -> Ended {
             "one `--reference` is of one scene\nmeasure the scenes one by one, or leave it out",
         ));
     }
-    let results = args.out.join("results");
-    std::fs::create_dir_all(&results)
-        .map_err(|error| Failure::machine(format!("cannot make {}", results.display()), reason(&error)))?;
+    make_results(&args.out)?;
     interrupt::listen();
     let machine = machine(super::TRACERS);
     let mut rows = Vec::new();
@@ -56,18 +54,17 @@ fn of_scene(args: &Tracers, path: &Path) -> Result<Result<Vec<TracerRow>, Exit>,
         let evaluated = animation.frame(0);
         let job = job(args, evaluated.scene.render.size);
         let settings = picture::settings(&evaluated.scene, &job).map_err(Failure::usage)?;
+        let (has_errors, written) = (evaluated.has_errors(), evaluated.scene.render.clone());
         let mut found = evaluated.diagnostics;
-        let prepared = match found.iter().any(|d| d.severity == ogee::diag::Severity::Error) {
-            true => None,
-            false => {
-                let (prepared, more) = animation.prepare(evaluated.scene, &job, settings);
-                found.extend(more);
-                prepared
-            }
-        };
+        let mut prepared = None;
+        if !has_errors {
+            let (ready, more) = animation.prepare(evaluated.scene, &job, settings);
+            found.extend(more);
+            prepared = ready;
+        }
         show(&found, animation.sources());
         let Some(prepared) = prepared else { return Ok(Err(Exit::Scene)) };
-        match measured(args, path, prepared)? {
+        match measured(args, path, Bench { prepared: Some(prepared), written, overrides: job.overrides })? {
             Some(rows) => Ok(Ok(rows)),
             None => Ok(Err(Exit::Interrupted)),
         }
@@ -91,9 +88,8 @@ fn small(size: [u32; 2]) -> [u32; 2] {
 }
 
 /// The rows of a scene that is ready; none where the user interrupts.
-fn measured(args: &Tracers, path: &Path, prepared: Prepared) -> Result<Option<Vec<TracerRow>>, Failure> {
+fn measured(args: &Tracers, path: &Path, mut bench: Bench) -> Result<Option<Vec<TracerRow>>, Failure> {
     let name = path.file_stem().map_or_else(|| "scene".into(), |stem| stem.to_string_lossy().into_owned());
-    let mut bench = Bench { prepared: Some(prepared), depth: args.depth };
     let plan = Plan { variants: args.variants.clone(), samples: rising(&args.samples), seeds: args.seeds };
     let best = *plan.samples.last().expect("the command line asks for one number at least");
     let reference = match &args.reference {
@@ -144,7 +140,9 @@ struct Interrupted;
 struct Bench {
     /// Taken while a tracer is made anew.
     prepared: Option<Prepared>,
-    depth: Option<u32>,
+    /// What the scene says of its picture, and what comes before that.
+    written: RenderSettings,
+    overrides: RenderSettings,
 }
 
 impl Bench {
@@ -161,18 +159,13 @@ impl Bench {
     fn film(&mut self, ask: &Ask, threads: Option<usize>) -> Result<(Film, f64), Interrupted> {
         let before = *self.settings();
         let asked = RenderSettings {
-            size: Some(before.size),
             tracer: Some(ask.variant.tracer),
             samples: Some(ask.samples),
             seed: Some(ask.seed),
             sampler: Some(ask.variant.sampler),
-            depth: self.depth,
-            accelerator: Some(before.accelerator),
-            background: before.background,
-            ..RenderSettings::default()
+            ..self.overrides.clone()
         };
-        let settings = ResolvedSettings::new(&asked, &RenderSettings::default());
-        let settings = ResolvedSettings { threads, crop: Crop::all(before.size), ..settings };
+        let settings = ResolvedSettings { threads, ..ResolvedSettings::new(&self.written, &asked) };
         let started = Instant::now();
         let mut prepared = self.prepared.take().expect("it is put back each time").retraced(settings);
         let film = prepared.render(&(), &interrupt::CANCEL);
