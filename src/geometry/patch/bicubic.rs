@@ -108,8 +108,12 @@ impl Bicubic {
     /// Unit normal along ∂/∂u × ∂/∂v; where that vanishes (a collapsed edge, parallel tangents) the limit from inside the piece. None
     /// where the limit takes more than third derivatives or does not exist: a piece without area.
     pub fn normal(&self, u: f64, v: f64) -> Option<DVec3> {
+        self.normal_by(u, v, self.size())
+    }
+
+    /// The same where the piece's [`Bicubic::size`] is known.
+    pub fn normal_by(&self, u: f64, v: f64, scale: f64) -> Option<DVec3> {
         let jet = self.jet(u, v);
-        let scale = self.size();
         let negligible = |n: DVec3| n.length() <= FLAT * scale * scale;
         let direct = jet.du.cross(jet.dv);
         if !negligible(direct) && direct.length() > FLAT * jet.du.length() * jet.dv.length() {
@@ -169,10 +173,16 @@ impl Bicubic {
     }
 
     /// Largest distance between neighbouring control points: the scale of its derivatives.
-    fn size(&self) -> f64 {
-        let steps =
-            (0..4).flat_map(|i| (0..3).flat_map(move |j| [((i, j), (i, j + 1)), ((j, i), (j + 1, i))]));
-        steps.fold(0.0, |m: f64, (a, b)| m.max(self.points[a.0][a.1].distance(self.points[b.0][b.1])))
+    pub fn size(&self) -> f64 {
+        let p = &self.points;
+        let mut squared = 0.0f64;
+        for i in 0..4 {
+            for j in 0..3 {
+                let steps = [p[i][j + 1] - p[i][j], p[j + 1][i] - p[j][i]];
+                squared = squared.max(steps[0].length_squared()).max(steps[1].length_squared());
+            }
+        }
+        squared.sqrt()
     }
 
     /// The box of the control points, which holds the surface.

@@ -35,7 +35,7 @@ pub fn tessellate(patch: &Patch, tolerance: Tolerance) -> Mesh {
 /// Triangles of one piece of a patch on a grid given.
 pub fn dice(patch: &Patch, index: usize, steps: &Steps, mesh: &mut Mesh) {
     let piece = &patch.pieces()[index];
-    let mut dicer = Dicer { patch, piece, index, mesh, uvs: Vec::new(), first: 0 };
+    let mut dicer = Dicer { patch, piece, size: piece.size(), index, mesh, uvs: Vec::new(), first: 0 };
     dicer.first = dicer.mesh.positions.len() as u32;
     dicer.run(steps);
 }
@@ -198,6 +198,8 @@ fn widest_gap(inner: &[f64]) -> f64 {
 struct Dicer<'a> {
     patch: &'a Patch,
     piece: &'a Bicubic,
+    /// The piece's.
+    size: f64,
     index: usize,
     mesh: &'a mut Mesh,
     /// The piece's own (u, v) of each of its vertices.
@@ -278,7 +280,7 @@ impl Dicer<'_> {
     fn vertex(&mut self, position: DVec3, u: f64, v: f64) -> u32 {
         let (global_u, global_v) = self.patch.global_uv(self.index, u, v);
         self.mesh.positions.push(position);
-        self.mesh.normals.push(self.piece.normal(u, v).unwrap_or(DVec3::Z));
+        self.mesh.normals.push(self.piece.normal_by(u, v, self.size).unwrap_or(DVec3::Z));
         self.mesh.uvs.push(DVec2::new(global_u, global_v));
         self.uvs.push((u, v));
         self.first + self.uvs.len() as u32 - 1
