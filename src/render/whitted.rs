@@ -135,11 +135,12 @@ impl Tracer for Whitted {
 impl Whitted {
     /// What the end of one ray adds to the sample; the rays that go on from there are added to the tasks.
     fn follow(&self, world: &World, task: &Task, tasks: &mut Tasks, sampler: &mut Sampler) -> Sampled<Rgb> {
-        let Some(hit) = world.closest(&task.ray) else {
+        // Both are looked at where they stand: a copy of so much just written waits for the writes.
+        let met = world.closest(&task.ray);
+        let Some(hit) = &met else {
             return Ok(task.weight * task.inside.kept(f64::INFINITY) * self.beyond(&task.ray));
         };
-        // Looked at where it stands: a copy of so much just written waits for the writes.
-        let found = Bsdf::at(world, &hit, &task.ray);
+        let found = Bsdf::at(world, hit, &task.ray);
         let bsdf = found.as_ref().map_err(|fault| *fault)?;
         let mut weight = task.weight * task.inside.left(bsdf, hit.t);
         if bsdf.opacity < 1.0 {
@@ -151,13 +152,13 @@ impl Whitted {
             tasks.push(past);
             weight *= bsdf.opacity;
         }
-        let mut radiance = bsdf.ambient + bsdf.emitted(world, &hit);
+        let mut radiance = bsdf.ambient + bsdf.emitted(world, hit);
         let last = self.second_rays && task.segment >= self.depth;
         if !last {
-            radiance += self.local(world, &hit, bsdf, task.segment == 1, sampler)?;
+            radiance += self.local(world, hit, bsdf, task.segment == 1, sampler)?;
         }
         if self.second_rays && !last && bsdf.goes_on() {
-            self.branch(&hit, bsdf, &Task { weight, ..*task }, tasks, sampler);
+            self.branch(hit, bsdf, &Task { weight, ..*task }, tasks, sampler);
         }
         Ok(weight * radiance)
     }

@@ -86,19 +86,18 @@ impl Bsdf {
         let side = if outside { 1.0 } else { -1.0 };
         let geometric = hit.geometric_normal * side;
         let at = TexturePoint::from(hit);
-        let mut bsdf = Bsdf {
-            wo,
-            geometric,
-            normal: normal::facing(hit.normal * side, geometric, wo),
-            outside,
-            diffuse: texture::colour(&material.diffuse, &at)?,
-            ..Bsdf::BARE
-        };
-        if material.layers.is_some() {
-            bsdf.add_layers(material, &at)?;
-            bsdf.bend_normal(world, hit, ray, &at)?;
+        let diffuse = texture::colour(&material.diffuse, &at)?;
+        let normal = normal::facing(hit.normal * side, geometric, wo);
+        // Made where it is given back: a copy of so much just written waits for the writes.
+        let mut made = Ok(Bsdf { wo, geometric, normal, outside, diffuse, ..Bsdf::BARE });
+        if material.layers.is_some()
+            && let Ok(bsdf) = &mut made
+            && let Err(fault) =
+                bsdf.add_layers(material, &at).and_then(|()| bsdf.bend_normal(world, hit, ray, &at))
+        {
+            made = Err(fault);
         }
-        Ok(bsdf)
+        made
     }
 
     /// Reflects nothing.
