@@ -82,7 +82,8 @@ impl Cells {
         visit: &mut impl FnMut(f64, f64, Visited<'_>) -> bool,
     ) {
         let backward = direction.is_negative_bitmask() as usize;
-        let walk = Walk { cells: self, origin, direction, inverse: direction.recip(), backward };
+        let never = DVec3::NEG_INFINITY.copysign(-direction);
+        let walk = Walk { cells: self, origin, inverse: direction.recip(), never, backward };
         match self.root {
             Cell::Parts(parts) => {
                 walk.divide(&self.parts[parts as usize], Place::of(bounds), between, visit);
@@ -121,8 +122,10 @@ impl Place {
 struct Walk<'c> {
     cells: &'c Cells,
     origin: DVec3,
-    direction: DVec3,
+    /// 1 over each coordinate of its direction.
     inverse: DVec3,
+    /// Where it crosses a plane in which it runs: before or after everything, as that is of the upper half.
+    never: DVec3,
     /// The axes along which it goes down, by bits.
     backward: usize,
 }
@@ -154,7 +157,7 @@ impl Walk<'_> {
         (from, to): (f64, f64),
         visit: &mut impl FnMut(f64, f64, Visited<'_>) -> bool,
     ) -> bool {
-        let mut cuts: [f64; 3] = std::array::from_fn(|axis| self.cut(axis, place.middle[axis]));
+        let mut cuts = self.cuts(place.middle);
         let (mut at, mut beyond) = (from, 0);
         loop {
             let mut end = to;
@@ -176,11 +179,12 @@ impl Walk<'_> {
         }
     }
 
-    /// Where the ray crosses the plane between lower and upper half; for a ray along it before or after everything, by its side.
+    /// Where the ray crosses the planes between lower and upper halves.
     #[inline(always)]
-    fn cut(&self, axis: usize, plane: f64) -> f64 {
-        let cut = (plane - self.origin[axis]) * self.inverse[axis];
-        // 0 · ∞: in the plane itself, which is of the upper half.
-        if cut.is_nan() { -f64::INFINITY.copysign(self.direction[axis]) } else { cut }
+    fn cuts(&self, middle: DVec3) -> [f64; 3] {
+        let cuts = (middle - self.origin) * self.inverse;
+        // 0 · ∞: in the plane itself.
+        let cut = |cut: f64, never: f64| if cut.is_nan() { never } else { cut };
+        [cut(cuts.x, self.never.x), cut(cuts.y, self.never.y), cut(cuts.z, self.never.z)]
     }
 }
