@@ -122,8 +122,8 @@ impl MeshShape {
         let mesh = &self.mesh;
         let indices = mesh.triangles[triangle as usize];
         let data = Corners {
-            normals: (!mesh.normals.is_empty()).then(|| indices.map(|i| mesh.normals[i as usize])),
-            uvs: (!mesh.uvs.is_empty()).then(|| indices.map(|i| mesh.uvs[i as usize])),
+            normals: (!mesh.normals.is_empty()).then(|| three(&mesh.normals, indices)),
+            uvs: (!mesh.uvs.is_empty()).then(|| three(&mesh.uvs, indices)),
         };
         surface_of(corners(mesh, indices), data, meet, bent)
     }
@@ -131,5 +131,11 @@ impl MeshShape {
 
 #[inline(always)]
 fn corners(mesh: &Mesh, indices: [u32; 3]) -> [DVec3; 3] {
-    indices.map(|i| mesh.positions[i as usize])
+    three(&mesh.positions, indices)
+}
+
+/// What stands at three places.
+#[inline(always)]
+fn three<T: Copy>(all: &[T], [a, b, c]: [u32; 3]) -> [T; 3] {
+    [all[a as usize], all[b as usize], all[c as usize]]
 }

@@ -51,6 +51,12 @@ impl Sheared {
         [q[x] - self.shear[0] * q[Z], q[y] - self.shear[1] * q[Z], q[Z]]
     }
 
+    /// All three, one by one: mapping an array costs as much as the test.
+    #[inline(always)]
+    fn corners<const Z: usize>(&self, [a, b, c]: [DVec3; 3]) -> [[f64; 3]; 3] {
+        [self.corner::<Z>(a), self.corner::<Z>(b), self.corner::<Z>(c)]
+    }
+
     /// Where the ray meets the triangle, at a distance in (0, limit]; from either side.
     #[inline(always)]
     pub fn meet(&self, corners: [DVec3; 3], limit: f64) -> Option<Meet> {
@@ -63,7 +69,7 @@ impl Sheared {
 
     #[inline(always)]
     fn meet_along<const Z: usize>(&self, corners: [DVec3; 3], limit: f64) -> Option<Meet> {
-        let [a, b, c] = corners.map(|p| self.corner::<Z>(p));
+        let [a, b, c] = self.corners::<Z>(corners);
         let mut u = c[0] * b[1] - c[1] * b[0];
         let mut v = a[0] * c[1] - a[1] * c[0];
         let mut w = b[0] * a[1] - b[1] * a[0];
@@ -94,17 +100,37 @@ impl Sheared {
     /// triangles with a common edge one does, and of all those around a point of a closed surface as many go in as come out.
     pub fn is_owner(&self, corners: [DVec3; 3]) -> bool {
         let [a, b, c] = match self.z {
-            0 => corners.map(|p| self.corner::<0>(p)),
-            1 => corners.map(|p| self.corner::<1>(p)),
-            _ => corners.map(|p| self.corner::<2>(p)),
+            0 => self.corners::<0>(corners),
+            1 => self.corners::<1>(corners),
+            _ => self.corners::<2>(corners),
         };
         let [u, v, w] = [side(c, b), side(a, c), side(b, a)];
         u != 0 && u == v && v == w
     }
 
-    /// From the triangle's plane through its nearest corner, for rays that start on or beside it.
-    #[cold]
+    /// From the triangle's plane through its nearest corner, for rays that start on or beside it; none where that is surely behind.
     fn distance_by_plane(&self, corners: [DVec3; 3]) -> Option<f64> {
+        if self.is_surely_behind(corners) { None } else { self.precise_distance(corners) }
+    }
+
+    /// Whether a triangle's plane is behind the ray's start, whatever plain arithmetic rounds: two products and a difference in the normal,
+    /// three products and two sums with it, and as many again where the accurate normal is used. Most rays that start on a triangle leave it.
+    #[inline(always)]
+    fn is_surely_behind(&self, [a, b, c]: [DVec3; 3]) -> bool {
+        let (e, f, to) = (b - a, c - a, a - self.origin);
+        let reach = |v: DVec3| v.x.abs() + v.y.abs() + v.z.abs();
+        // Of every corner, and of what the normal is made of.
+        let far = reach(to) + reach(e) + reach(f);
+        let size = reach(e) * reach(f) * gamma(16);
+        let n = e.cross(f);
+        let (to_plane, along) = (n.dot(to), n.dot(self.direction));
+        to_plane * along < 0.0
+            && to_plane.abs() > size * far + f64::MIN_POSITIVE
+            && along.abs() > size * reach(self.direction) + f64::MIN_POSITIVE
+    }
+
+    #[cold]
+    fn precise_distance(&self, corners: [DVec3; 3]) -> Option<f64> {
         let n = normal_of(corners);
         let nearest = corners
             .into_iter()
