@@ -69,7 +69,6 @@ codes! {
     ConflictingProperties = "E0305", "two properties exclude each other";
     LabelInsideObject = "E0306", "a labelled block stands where a property is meant";
     NotPlaceable = "E0307", "a value that is no object or light is placed";
-    NotBuilt = "W0308", "a part of the language is not built yet";
     UnknownWord = "E0309", "a word is not one of those the property takes";
     EnergyGain = "W0310", "a material returns more light than it gets";
     NotSolid = "E0311", "a surface that is no solid is put together with solids";

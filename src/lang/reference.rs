@@ -9,7 +9,7 @@ use super::table::{Builtin, Kind, Property, Role};
 use std::fmt::Write;
 
 /// The chapters of prose: the name by which `page` finds one, the title, the text.
-const PROSE: [(&str, &str, &str); 11] = [
+const PROSE: [(&str, &str, &str); 10] = [
     ("language", "The language", include_str!("reference/language.md")),
     ("expressions", "Expressions", include_str!("reference/expressions.md")),
     ("cameras", "Cameras and pictures", include_str!("reference/camera.md")),
@@ -19,7 +19,6 @@ const PROSE: [(&str, &str, &str); 11] = [
     ("objects", "Objects", include_str!("reference/objects.md")),
     ("curves", "Curves", include_str!("reference/curves.md")),
     ("skeletons", "Skeletons", include_str!("reference/skeletons.md")),
-    ("unbuilt", "What is not built yet", include_str!("reference/unbuilt.md")),
     ("decisions", "Decisions", include_str!("reference/decisions.md")),
 ];
 

@@ -1,9 +1,9 @@
 //! What a world stores: shapes and placements in groups, each with a tree; meshes with theirs; and how a placement of a
 //! placement is counted.
 
-use super::bvh::Tree;
 use super::shape::mesh::MeshShape;
 use super::shape::{Csg, EVERYTHING, Shape, image_of};
+use super::tree::Tree;
 use crate::diag::Span;
 use crate::math::{Aabb, Affine};
 use crate::scene::{Hide, Light};

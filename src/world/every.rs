@@ -64,14 +64,14 @@ impl World {
                 }));
             }
             Aggregate::Group(group) => {
-                group.tree.traverse(ray.origin, ray.direction, f64::MAX, |range, t_max| {
+                group.tree.traverse_all(ray.origin, ray.direction, |range| {
                     for position in range {
                         self.gather_item(group, position, &local, found);
                         if found.is_over() {
-                            return -1.0;
+                            return false;
                         }
                     }
-                    t_max
+                    true
                 });
             }
         }

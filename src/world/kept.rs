@@ -6,7 +6,7 @@
 mod content;
 
 use super::shape::mesh::MeshShape;
-use crate::scene::{Material, MeshSource};
+use crate::scene::{Accelerator, Material, MeshSource};
 pub(super) use content::{Content, Of};
 use std::any::Any;
 use std::cell::{Cell, RefCell};
@@ -20,7 +20,7 @@ pub(super) type FileKey = (PathBuf, Option<bool>);
 /// What worlds that were made before leave. Empty for a world that is made alone.
 #[derive(Default)]
 pub struct Kept {
-    with_trees: bool,
+    accelerator: Accelerator,
     /// Whether worlds follow in which the same may stand.
     goes_on: bool,
     files: HashMap<FileKey, KeptMesh>,
@@ -55,10 +55,10 @@ impl Kept {
         Kept { goes_on: true, ..Kept::default() }
     }
 
-    /// Before a world is made: what the last one did not use goes, and all of it where trees were not as they are now.
-    pub(super) fn begin(&mut self, with_trees: bool) {
-        if with_trees != self.with_trees {
-            *self = Kept { with_trees, goes_on: self.goes_on, ..Kept::default() };
+    /// Before a world is made: what the last one did not use goes, and all of it where trees were of another kind.
+    pub(super) fn begin(&mut self, accelerator: Accelerator) {
+        if accelerator != self.accelerator {
+            *self = Kept { accelerator, goes_on: self.goes_on, ..Kept::default() };
         }
         self.shared.retain(|_, mesh| std::mem::take(&mut mesh.used));
         self.reused.set(0);

@@ -12,9 +12,9 @@ mod survey;
 mod views;
 
 use super::aggregate::{Aggregate, Group, INHERITED, Instance, Item, Scope};
-use super::bvh::Tree;
 use super::kept::Content;
 use super::shape::{self, EVERYTHING};
+use super::tree::Tree;
 use super::{Kept, World, WorldOptions};
 use crate::diag::{Code, Diagnostic, Sink, Span};
 use crate::math::Affine;
@@ -78,11 +78,10 @@ fn lowered(
     assets: &AssetCache<'_>,
     kept: &mut Kept,
 ) -> (Vec<Aggregate>, Vec<Arc<Material>>, Sink) {
-    let with_trees = options.accelerator != Accelerator::None;
-    kept.begin(with_trees);
+    kept.begin(options.accelerator);
     let mut lowering = Lowering {
         survey: Survey::of(&nodes),
-        with_trees,
+        accelerator: options.accelerator,
         assets,
         kept,
         sink: Sink::default(),
@@ -105,7 +104,7 @@ fn lowered(
 /// What is known while a scene is taken apart.
 struct Lowering<'a> {
     survey: Survey,
-    with_trees: bool,
+    accelerator: Accelerator,
     assets: &'a AssetCache<'a>,
     /// Of worlds made before.
     kept: &'a mut Kept,
@@ -239,7 +238,7 @@ impl Lowering<'_> {
     fn plant(&self, group: &mut Group) {
         let (count, aggregates) = (group.items.len(), &self.aggregates);
         let bounds_of = |i: usize| group.item_bounds(i, aggregates);
-        let tree = if self.with_trees { Tree::build(count, bounds_of) } else { Tree::list(count, bounds_of) };
+        let tree = Tree::build(self.accelerator, count, bounds_of);
         group.bounds = if tree.is_unbounded() { EVERYTHING } else { tree.bounds() };
         group.tree = tree;
     }

@@ -13,6 +13,7 @@ mod even;
 mod every;
 mod footprint;
 mod hit;
+pub mod kdtree;
 mod kept;
 pub mod light;
 pub mod lower;
@@ -20,6 +21,7 @@ mod place;
 mod query;
 pub mod shape;
 pub mod texture;
+pub mod tree;
 
 pub use emitter::{Emitter, EmitterShape, PlacedLight};
 pub use footprint::Footprint;
@@ -86,7 +88,7 @@ pub struct Provenance {
 /// How a world is made.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct WorldOptions {
-    /// The tree over the shapes. A kd-tree is not built yet and counts as `bvh`.
+    /// The trees over the shapes, and over the triangles of meshes.
     pub accelerator: Accelerator,
     /// The pixels of the picture, which decide how finely patches are cut into triangles. None: no picture is made, and rays meet every
     /// patch directly.

@@ -213,22 +213,29 @@ fn facts(hit: &Hit<'_>) -> (u64, PrimitiveId, DVec3, DVec3, DVec3) {
 }
 
 #[test]
-fn the_tree_meets_what_the_list_of_all_shapes_meets() {
+fn trees_meet_what_the_list_of_all_shapes_meets() {
     let mut hits = 0;
     for seed in 0..4 {
-        let tree = world_of(jumble(seed), Accelerator::Bvh);
+        let trees = [Accelerator::Bvh, Accelerator::KdTree].map(|tree| world_of(jumble(seed), tree));
         let list = world_of(jumble(seed), Accelerator::None);
         let mut random = Random(seed + 100);
         for i in 0..800 {
             let ray = any_ray(&mut random, i);
-            let (a, b) = (tree.closest(&ray), list.closest(&ray));
-            assert_eq!(a.as_ref().map(facts), b.as_ref().map(facts), "seed {seed} ray {i}: {ray:?}");
-            assert_eq!(tree.occluded(&ray), b.is_some(), "seed {seed} ray {i}: {ray:?}");
-            hits += usize::from(a.is_some());
-            if let Some(hit) = a {
-                let beyond = Ray { t_max: hit.t, ..ray };
-                assert!(tree.closest(&beyond).is_none(), "a hit at t_max does not count: {ray:?}");
+            let truth = list.closest(&ray);
+            for tree in &trees {
+                let met = tree.closest(&ray);
+                assert_eq!(
+                    met.as_ref().map(facts),
+                    truth.as_ref().map(facts),
+                    "seed {seed} ray {i}: {ray:?}"
+                );
+                assert_eq!(tree.occluded(&ray), truth.is_some(), "seed {seed} ray {i}: {ray:?}");
+                if let Some(hit) = met {
+                    let beyond = Ray { t_max: hit.t, ..ray };
+                    assert!(tree.closest(&beyond).is_none(), "a hit at t_max does not count: {ray:?}");
+                }
             }
+            hits += usize::from(truth.is_some());
         }
     }
     assert!(hits > 800, "{hits}");

@@ -1,7 +1,7 @@
 //! The language: scenes that assert what it means, faults with their codes, guards, imports, and functions that run while
 //! rendering held against the evaluator.
 
-use ogee::diag::{Diagnostic, Severity};
+use ogee::diag::Diagnostic;
 use ogee::scene::assets::Loader;
 use ogee::scene::{LightSource, Node, PatternKind, Rgb, SampledFunction, Sky, Texture};
 use ogee::session::{Answer, Evaluated, Limits, Options, Session};
@@ -459,15 +459,6 @@ fn a_copy_of_a_sky_keeps_its_picture_though_its_path_was_joined_already() {
     let LightSource::Sky(Sky::Image { path, factor, .. }) = &light.source else { panic!("a picture") };
     assert_eq!((path.as_path(), *factor), (std::path::Path::new("scenes/sky.hdr"), Rgb::splat(3.0)));
     assert!(light.transform.is_some());
-}
-
-#[test]
-fn what_is_not_built_yet_is_a_warning_and_the_rest_is_made() {
-    let text =
-        "camera { eye z*5  look_at <0, 0, 0> } light { sky 1 } render { accelerator kdtree }\nsphere {}";
-    let evaluated = evaluate(text);
-    assert!(evaluated.diagnostics.iter().all(|d| d.severity == Severity::Warning), "{}", told(&evaluated));
-    assert!(!evaluated.diagnostics.is_empty());
 }
 
 /// The function of the first object's diffuse texture.

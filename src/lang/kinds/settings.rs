@@ -216,7 +216,7 @@ fn render(ctx: &mut dyn Context, block: Block) -> Outcome {
         depth: count("depth"),
         seed: block.integer("seed"),
         sampler: block.word("sampler").map(sampler),
-        accelerator: accelerator(ctx, &block),
+        accelerator: block.word("accelerator").map(accelerator),
         exposure: block.number("exposure"),
         tonemap: block.word("tonemap").map(tonemap),
         background: block.colour("background"),
@@ -255,23 +255,12 @@ fn sampler(word: &str) -> SamplerKind {
     }
 }
 
-fn accelerator(ctx: &mut dyn Context, block: &Block) -> Option<Accelerator> {
-    Some(match block.word("accelerator")? {
+fn accelerator(word: &str) -> Accelerator {
+    match word {
         "bvh" => Accelerator::Bvh,
-        "kdtree" => {
-            not_built(ctx, block, "accelerator", "bvh");
-            Accelerator::KdTree
-        }
+        "kdtree" => Accelerator::KdTree,
         _ => Accelerator::None,
-    })
-}
-
-fn not_built(ctx: &mut dyn Context, block: &Block, name: &str, instead: &str) {
-    let word = block.word(name).unwrap_or_default();
-    let said =
-        Diagnostic::new(Code::NotBuilt, block.place(name), format!("`{name} {word}` is not built yet"))
-            .label(format!("`{instead}` is used instead"));
-    ctx.report(said);
+    }
 }
 
 fn tonemap(word: &str) -> ToneMap {

@@ -6,7 +6,7 @@ use glam::DVec3;
 
 /// x ↦ (x − center)·scale, with a power of two for scale, so that only the subtraction rounds.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Frame {
+pub struct Frame {
     pub center: DVec3,
     pub scale: f64,
 }
@@ -42,13 +42,13 @@ const LEAST_STEP: f64 = f32::MIN_POSITIVE as f64;
 
 /// A float at or below x. The subtraction into the frame and the cast are together less than one f32 step.
 #[inline(always)]
-pub(super) fn round_down(x: f64) -> f32 {
+pub fn round_down(x: f64) -> f32 {
     (x - (x.abs() * STEP + LEAST_STEP)) as f32
 }
 
 /// A float at or above x.
 #[inline(always)]
-pub(super) fn round_up(x: f64) -> f32 {
+pub fn round_up(x: f64) -> f32 {
     (x + (x.abs() * STEP + LEAST_STEP)) as f32
 }
 

@@ -6,7 +6,8 @@
 //! meet more rather than less, and so a box never hides what an exact test inside it would find.
 
 mod build;
-mod frame;
+pub(super) mod frame;
+pub(super) mod survey;
 #[cfg(test)]
 mod tests;
 mod traverse;
@@ -86,7 +87,7 @@ impl Tree {
 
     /// No tree: every item is offered to every ray, in order.
     pub fn list(count: usize, bounds_of: impl Fn(usize) -> Aabb + Sync) -> Tree {
-        let (bounds, unbounded) = build::survey(count, &bounds_of);
+        let (bounds, unbounded) = survey::survey(count, &bounds_of);
         Tree {
             frame: Frame::default(),
             bounds,

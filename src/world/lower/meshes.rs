@@ -112,7 +112,7 @@ impl Lowering<'_> {
             self.sink.push(Diagnostic::new(Code::MeshRepaired, span, message));
             return None;
         }
-        Some(Arc::new(MeshShape::new(Arc::new(mesh), worn, self.with_trees)))
+        Some(Arc::new(MeshShape::new(Arc::new(mesh), worn, self.accelerator)))
     }
 
     pub(super) fn keep_shape(&mut self, shape: Arc<MeshShape>, materials: Vec<Arc<Material>>) -> u32 {

@@ -1,11 +1,11 @@
 //! Meshes as rays meet them: shared vertices, triangles in the order of their tree.
 
-use super::triangle::{Corners, Sheared, bounds_of, surface_of};
+use super::triangle::{Corners, Sheared, bounds_of, cut, surface_of};
 use super::{LocalRay, Meet, Surface};
 use crate::geometry::mesh::Mesh;
 use crate::geometry::skin::Influences;
-use crate::scene::Armature;
-use crate::world::bvh::Tree;
+use crate::scene::{Accelerator, Armature};
+use crate::world::tree::Tree;
 use glam::DVec3;
 use std::sync::Arc;
 
@@ -67,14 +67,12 @@ impl WornPlace<'_> {
 }
 
 impl MeshShape {
-    /// Builds the tree, or a list.
-    pub fn new(mesh: Arc<Mesh>, worn: Option<Worn>, with_tree: bool) -> MeshShape {
+    /// Builds the tree.
+    pub fn new(mesh: Arc<Mesh>, worn: Option<Worn>, accelerator: Accelerator) -> MeshShape {
         let count = mesh.triangles.len();
-        let tree = if with_tree {
-            Tree::build(count, |i| bounds_of(corners(&mesh, mesh.triangles[i])))
-        } else {
-            Tree::list(count, |i| bounds_of(corners(&mesh, mesh.triangles[i])))
-        };
+        let of = |i: usize| corners(&mesh, mesh.triangles[i]);
+        let tree =
+            Tree::build_clipped(accelerator, count, |i| bounds_of(of(i)), |i, cell| cut::cut(of(i), cell));
         let triangles = tree.order().iter().map(|&i| mesh.triangles[i as usize]).collect();
         MeshShape { mesh, triangles, tree, worn: worn.map(Box::new) }
     }
@@ -92,7 +90,7 @@ impl MeshShape {
     pub fn crossings(&self, ray: &LocalRay, out: &mut Vec<Meet>) {
         let first = out.len();
         let sheared = Sheared::new(ray);
-        self.tree.traverse(ray.origin, ray.direction, f64::MAX, |range, t_max| {
+        self.tree.traverse_all(ray.origin, ray.direction, |range| {
             for position in range {
                 if let Some(meet) = self.meet(position, &sheared, f64::MAX) {
                     let owned = sheared.is_owner(corners(&self.mesh, self.triangles[position]));
@@ -100,7 +98,7 @@ impl MeshShape {
                     out.extend(std::iter::repeat_n(meet, if owned { 1 } else { 2 }));
                 }
             }
-            t_max
+            true
         });
         out[first..].sort_by(|a, b| a.t.total_cmp(&b.t).then(a.face.cmp(&b.face)));
     }

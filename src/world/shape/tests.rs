@@ -4,7 +4,7 @@ use super::mesh::MeshShape;
 use super::triangle::Sheared;
 use super::*;
 use crate::geometry::mesh::Mesh;
-use crate::scene;
+use crate::scene::{self, Accelerator};
 use std::sync::Arc;
 
 /// Numbers in −1 … 1 (splitmix64).
@@ -123,8 +123,8 @@ fn cube() -> Mesh {
 
 #[test]
 fn a_closed_mesh_has_an_inside_through_edges_and_corners() {
-    for with_tree in [true, false] {
-        let shape = MeshShape::new(Arc::new(cube()), None, with_tree);
+    for accelerator in [Accelerator::Bvh, Accelerator::KdTree, Accelerator::None] {
+        let shape = MeshShape::new(Arc::new(cube()), None, accelerator);
         let mut random = Random(3);
         for case in 0..40_000 {
             let ray = random.ray();

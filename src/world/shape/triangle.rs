@@ -5,6 +5,8 @@
 //! so that two triangles with a common edge never both let a ray through. The point is found from the barycentric
 //! coordinates and not from the distance, which is only as good as the longest axis.
 
+pub mod cut;
+
 use super::{LocalRay, Meet, Surface};
 use crate::math::Aabb;
 use crate::math::error::gamma;

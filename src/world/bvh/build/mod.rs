@@ -11,10 +11,10 @@ mod split;
 mod subtree;
 
 use super::frame::Frame;
+use super::survey::{BY_ONE_THREAD, is_usable, survey};
 use super::{Tree, WIDTH};
 use crate::math::Aabb;
 use boxes::{Box32, Boxed, Item};
-use glam::DVec3;
 use rayon::prelude::*;
 use split::{Bins, Part};
 
@@ -39,45 +39,6 @@ pub(super) fn build(count: usize, bounds_of: impl Fn(usize) -> Aabb + Sync) -> T
     let any_unbounded = !unbounded.is_empty();
     order.extend(unbounded);
     Tree { frame, bounds, unbounded: any_unbounded, nodes, order, bounded }
-}
-
-/// So many boxes are surveyed by one thread: no more than one is woken for fewer, and a scene of few starts no threads at all.
-const BY_ONE_THREAD: usize = 1 << 12;
-
-/// The box around the finite boxes, and the items without one.
-pub(super) fn survey(count: usize, bounds_of: &(impl Fn(usize) -> Aabb + Sync)) -> (Aabb, Vec<u32>) {
-    let nothing = || (Aabb::EMPTY, Vec::new());
-    let with = |(bounds, mut unbounded): (Aabb, Vec<u32>), i: usize| {
-        let b = bounds_of(i);
-        if is_usable(&b) {
-            return (bounds.union(b), unbounded);
-        }
-        if !is_nothing(&b) {
-            unbounded.push(i as u32);
-        }
-        (bounds, unbounded)
-    };
-    if count <= BY_ONE_THREAD {
-        return (0..count).fold(nothing(), with);
-    }
-    (0..count).into_par_iter().with_min_len(BY_ONE_THREAD).fold(nothing, with).reduce(
-        nothing,
-        |(a, mut x), (b, y)| {
-            x.extend(y);
-            (a.union(b), x)
-        },
-    )
-}
-
-/// Neither empty nor infinite in any direction, nor NaN, nor so large that its size overflows.
-fn is_usable(b: &Aabb) -> bool {
-    let size = b.size();
-    (size.cmpge(DVec3::ZERO) & size.cmple(DVec3::MAX)).all()
-}
-
-/// The empty box: what has it is never met. All others that are not usable are offered to every ray.
-fn is_nothing(b: &Aabb) -> bool {
-    b.is_empty() && !b.min.is_nan() && !b.max.is_nan()
 }
 
 /// The items with a finite box, in order. Made in place: for a million of them a second copy would be felt.
