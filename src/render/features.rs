@@ -37,6 +37,23 @@ impl Layers {
     /// None of them.
     pub const NONE: Layers = Layers(0);
 
+    /// What [`super::denoise`] goes by: more than is ever written into a file.
+    pub const GUIDES: Layers = Layers(
+        Self::SPREAD
+            | 1 << Layer::Albedo as u8
+            | 1 << Layer::Normal as u8
+            | 1 << Layer::Position as u8
+            | 1 << Layer::Variance as u8,
+    );
+
+    /// How features differ within a pixel, and its two parts.
+    const SPREAD: u8 = 1 << 7;
+
+    /// These and others.
+    pub const fn and(self, others: Layers) -> Layers {
+        Layers(self.0 | others.0)
+    }
+
     /// These and another.
     pub const fn with(self, layer: Layer) -> Layers {
         Layers(self.0 | 1 << layer as u8)
@@ -55,6 +72,11 @@ impl Layers {
     /// True where it must be found out what the camera's rays meet.
     fn look(self) -> bool {
         self.0 & !(1 << Layer::Variance as u8) != 0
+    }
+
+    /// True where guides are kept.
+    fn guides(self) -> bool {
+        self.0 & Self::SPREAD != 0
     }
 }
 
@@ -75,6 +97,19 @@ pub struct Features {
     pub variance: Rgb,
     /// 1 + its index in [`super::film::Film::sources`]; 0 for none.
     pub source: u32,
+    /// Two parts of the pixel's samples, where guides are kept.
+    pub halves: Halves,
+    /// Variances of the means of albedo, normal and position, summed over their components, where guides are kept.
+    pub spread: DVec3,
+}
+
+/// The mean of a first part of a pixel's samples, about half of them and as even as all of them.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Halves {
+    /// Mean radiance of the first part.
+    pub first: Rgb,
+    /// Its share of the samples, 1/3 … 2/3; 0 where there are not two samples.
+    pub share: f64,
 }
 
 /// An object of the scene, as its text made it.
@@ -104,6 +139,9 @@ pub struct FeatureSum {
     depth: f64,
     position: DVec3,
     moments: Moments,
+    parts: Parts,
+    /// Of albedo, normal and position, over all samples.
+    spread: [Moments; 3],
     /// Objects met, with their counts of samples.
     sources: Vec<(Source, u32)>,
 }
@@ -115,23 +153,38 @@ impl FeatureSum {
         if asked.has(Layer::Variance) && radiance.is_finite() {
             self.moments.add(radiance);
         }
-        let Some(ray) = ray.filter(|_| asked.look()) else { return };
-        let Some(hit) = world.closest(ray) else { return };
-        self.meet(world, ray, &hit);
-        if asked.has(Layer::Source) {
-            self.count(world, &hit);
+        if asked.guides() && radiance.is_finite() {
+            self.parts.add(radiance);
+        }
+        if !asked.look() {
+            return;
+        }
+        let met = ray.and_then(|ray| Some((ray, world.closest(ray)?)));
+        let seen = met.map_or([Rgb::ZERO; 2], |(ray, hit)| {
+            if asked.has(Layer::Source) {
+                self.count(world, &hit);
+            }
+            self.meet(world, ray, &hit, asked)
+        });
+        if asked.guides() {
+            seen.into_iter().zip(&mut self.spread).for_each(|(x, moments)| moments.add(x));
         }
     }
 
-    fn meet(&mut self, world: &World, ray: &Ray, hit: &Hit<'_>) {
+    /// Takes what a ray met; gives its albedo and normal.
+    fn meet(&mut self, world: &World, ray: &Ray, hit: &Hit<'_>, asked: Layers) -> [DVec3; 2] {
         self.hits += 1;
         self.depth += hit.t * ray.direction.length();
         self.position += hit.point;
-        // What has no value is magenta in the picture, and has no albedo here.
-        if let Ok(bsdf) = Bsdf::at(world, hit, ray) {
-            self.albedo += bsdf.albedo();
-            self.normal += bsdf.normal;
+        if asked.guides() {
+            self.spread[2].add(hit.point);
         }
+        // What has no value is magenta in the picture, and has no albedo here.
+        let Ok(bsdf) = Bsdf::at(world, hit, ray) else { return [Rgb::ZERO; 2] };
+        let (albedo, normal) = (bsdf.albedo(), bsdf.normal);
+        self.albedo += albedo;
+        self.normal += normal;
+        [albedo, normal]
     }
 
     fn count(&mut self, world: &World, hit: &Hit<'_>) {
@@ -153,6 +206,8 @@ impl FeatureSum {
             position: self.position / hits,
             variance: self.moments.variance_of_mean(),
             source: 0,
+            halves: self.parts.halves(),
+            spread: DVec3::from(self.spread.map(|m| m.variance_of_mean().element_sum())),
         };
         let most = self.sources.iter().rev().max_by_key(|(_, count)| *count);
         (features, most.map(|(source, _)| source))
@@ -182,6 +237,35 @@ impl Moments {
     }
 }
 
+/// Samples summed as they come, with the sums after the last two powers of two: where either part of them is as even as all.
+#[derive(Clone, Copy, Debug, Default)]
+struct Parts {
+    n: u32,
+    sum: Rgb,
+    marks: [(u32, Rgb); 2],
+}
+
+impl Parts {
+    fn add(&mut self, x: Rgb) {
+        if self.n.is_power_of_two() {
+            self.marks = [self.marks[1], (self.n, self.sum)];
+        }
+        self.n += 1;
+        self.sum += x;
+    }
+
+    /// Cut where it is nearest to the middle.
+    fn halves(&self) -> Halves {
+        let [before, last] = self.marks;
+        let (n, sum) = if last.0 + before.0 <= self.n { last } else { before };
+        if n == 0 {
+            Halves::default()
+        } else {
+            Halves { first: sum / f64::from(n), share: f64::from(n) / f64::from(self.n) }
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -193,6 +277,20 @@ mod tests {
         // Squares of −3, −2, 0, 5 are 38 together.
         assert!((moments.variance_of_mean() - Rgb::splat(38.0 / 3.0 / 4.0)).abs().max_element() < 1e-8);
         assert_eq!(Moments { n: 1, ..moments }.variance_of_mean(), Rgb::ZERO);
+    }
+
+    #[test]
+    fn parts_are_cut_at_a_power_of_two_near_the_middle() {
+        let share = |n: u32| {
+            let mut parts = Parts::default();
+            (0..n).for_each(|i| parts.add(Rgb::splat(f64::from(i))));
+            let Halves { first, share } = parts.halves();
+            let cut = share * f64::from(n);
+            assert!(n < 2 || (first.x - (cut - 1.0) / 2.0).abs() < 1e-12, "{n}: {first} of the first {cut}");
+            cut.round() as u32
+        };
+        assert_eq!([1, 2, 3, 4, 5, 6, 8, 12, 13, 16, 100].map(share), [0, 1, 2, 2, 2, 4, 4, 8, 8, 8, 64]);
+        assert!((2..3000).all(|n| (n..3 * n).contains(&(3 * share(n))) && 3 * share(n) <= 2 * n));
     }
 
     #[test]

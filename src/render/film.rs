@@ -25,6 +25,8 @@ pub struct Film {
     pub layers: Layers,
     /// Which pixels are finished; all of them unless the rendering was cancelled.
     pub finished: Vec<bool>,
+    /// True once noise has been filtered out of it.
+    pub denoised: bool,
     /// What happened on the way.
     pub report: Report,
 }
@@ -148,6 +150,7 @@ impl Film {
             sources: Vec::new(),
             layers: Layers::NONE,
             finished: vec![false; n],
+            denoised: false,
             report: Report::default(),
         }
     }

@@ -13,6 +13,7 @@ pub trait Tracer: Sync {
 pub mod adaptive;
 pub mod camera;
 pub mod compare;
+pub mod denoise;
 pub mod features;
 pub mod film;
 mod irradiance;

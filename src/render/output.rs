@@ -71,6 +71,9 @@ pub struct Metadata {
     /// The estimated error at which a pixel was finished; `samples` are then the most.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub error: Option<f64>,
+    /// Whether noise was filtered out of the finished picture.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub denoise: bool,
     /// The objects that the layer `source` numbers.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub sources: Vec<Origin>,

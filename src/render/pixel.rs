@@ -92,7 +92,7 @@ impl Pixel {
             note_non_finite(picture.world, ray, self.place, report);
         }
         if let Some(features) = &mut self.features {
-            features.add(picture.settings.layers, picture.world, ray.as_ref(), radiance);
+            features.add(picture.settings.kept(), picture.world, ray.as_ref(), radiance);
         }
         self.undefined = self.undefined.or(sampler.undefined);
         report.rays += sampler.rays;

@@ -33,6 +33,8 @@ pub struct ResolvedSettings {
     pub error: Option<f64>,
     /// What of each pixel is written beside its radiance.
     pub layers: Layers,
+    /// Whether noise is filtered out of the finished picture.
+    pub denoise: bool,
     /// Threads; none takes as many as the machine has processors.
     pub threads: Option<usize>,
 }
@@ -96,8 +98,16 @@ impl ResolvedSettings {
             background: overrides.background.or(scene.background),
             error: None,
             layers: Layers::NONE,
+            denoise: false,
             threads: None,
         }
+    }
+}
+
+impl ResolvedSettings {
+    /// What is kept of each pixel beside its radiance: what is written, and what the filter of noise goes by.
+    pub fn kept(&self) -> Layers {
+        if self.denoise { self.layers.and(Layers::GUIDES) } else { self.layers }
     }
 }
 

@@ -116,7 +116,7 @@ impl Tile {
     /// Without a sample.
     pub fn new(crop: Crop, settings: &ResolvedSettings) -> Tile {
         let places = (0..crop.height).flat_map(|y| (0..crop.width).map(move |x| [crop.x + x, crop.y + y]));
-        let pixels = places.map(|place| Pixel::new(place, settings.layers)).collect();
+        let pixels = places.map(|place| Pixel::new(place, settings.kept())).collect();
         Tile { crop, pixels, report: Report::default() }
     }
 
@@ -137,7 +137,7 @@ impl Tile {
         let mut film = Film::new(settings.size, self.crop);
         film.layers = settings.layers;
         film.report = self.report.clone();
-        film.keep(settings.layers);
+        film.keep(settings.kept());
         for (i, pixel) in self.pixels.iter().enumerate() {
             if pixel.taken < to && !pixel.enough {
                 continue;

@@ -5,6 +5,7 @@ use super::whole;
 use crate::diag::{Code, Diagnostic};
 use crate::math::field::FaultKind;
 use crate::render::camera::View;
+use crate::render::denoise;
 use crate::render::features::Layers;
 use crate::render::film::{Fault, Film};
 use crate::render::passes::Passes;
@@ -30,6 +31,8 @@ pub struct Job {
     pub error: Option<f64>,
     /// What of each pixel is written beside its radiance.
     pub layers: Layers,
+    /// Whether noise is filtered out of the finished picture.
+    pub denoise: bool,
     /// Threads; none takes as many as the machine has processors.
     pub threads: Option<usize>,
 }
@@ -48,6 +51,7 @@ pub struct Prepared {
 pub fn settings(scene: &Scene, job: &Job) -> Result<ResolvedSettings, String> {
     let mut settings = ResolvedSettings::new(&scene.render, &job.overrides);
     (settings.threads, settings.error, settings.layers) = (job.threads, job.error, job.layers);
+    settings.denoise = job.denoise;
     if let Some([x, y, width, height]) = job.crop {
         let [w, h] = settings.size;
         settings.crop = Crop { x, y, width, height };
@@ -120,7 +124,9 @@ impl Prepared {
 
     /// Renders. Once `cancel` is true the film comes back as far as it is.
     pub fn render(&self, progress: &dyn Progress, cancel: &AtomicBool) -> Film {
-        tiles::render(self.picture(), progress, cancel)
+        let film = Mutex::new(self.bare_film());
+        self.render_onto(&film, progress, cancel);
+        film.into_inner().unwrap_or_else(|poisoned| poisoned.into_inner())
     }
 
     /// The same world by another tracer, with all that it makes beforehand. The camera and the tree stay as they are.
@@ -143,9 +149,23 @@ impl Prepared {
         Film::new(self.settings.size, self.settings.crop)
     }
 
-    /// Renders onto a bare film that others may look at meanwhile: every tile that is finished is on it.
+    /// Takes the noise out of a complete film, where that is asked for. Once `cancel` is true the film stays as it is.
+    pub fn filter(&self, film: &Mutex<Film>, progress: &dyn Progress, cancel: &AtomicBool) {
+        let held = || film.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
+        if !self.settings.denoise || !held().is_complete() {
+            return;
+        }
+        let noisy = held().clone();
+        if let Some(pixels) = denoise::denoised(&noisy, self.settings.threads, progress, cancel) {
+            let mut film = held();
+            (film.pixels, film.denoised) = (pixels, true);
+        }
+    }
+
+    /// Renders onto a bare film that others may look at meanwhile: every tile that is finished is on it. Noise is filtered at the end.
     pub fn render_onto(&self, film: &Mutex<Film>, progress: &dyn Progress, cancel: &AtomicBool) {
         tiles::render_onto(film, self.picture(), tiles::TILE, progress, cancel);
+        self.filter(film, progress, cancel);
     }
 }
 

@@ -140,8 +140,6 @@ fn faults_of_the_scene_exit_1_of_the_line_2_of_the_machine_3() {
     folder.ogee("check broken.scene").expect(1);
     folder.ogee("render ball.scene --size big").expect(2);
     folder.ogee("render ball.scene --tracer magic").expect(2);
-    let run = folder.ogee("render ball.scene --denoise").expect(2);
-    assert!(run.stderr.contains("`--denoise` is not built yet"), "{}", run.stderr);
     let run = folder.ogee("render bal.scene").expect(3);
     assert!(run.stderr.contains("did you mean ball.scene?"), "{}", run.stderr);
     folder.ogee("render ball.scene -o no/such/folder/a.png").expect(3);

@@ -4,6 +4,7 @@
 
 mod animation;
 mod command;
+mod denoise;
 mod diagnostics;
 mod explain;
 mod fuzz;

@@ -50,11 +50,6 @@ impl Failure {
     pub fn machine(what: impl std::fmt::Display, error: impl std::fmt::Display) -> Self {
         Failure { exit: Exit::Machine, message: format!("{what}: {error}") }
     }
-
-    /// What is asked for comes in a later version.
-    pub fn not_built(what: &str) -> Self {
-        Failure::usage(format!("{what} is not built yet"))
-    }
 }
 
 /// Writes data to standard output.

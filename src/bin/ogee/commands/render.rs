@@ -26,7 +26,6 @@ use target::{Form, Saving, Target};
 
 /// Renders to the file that is asked for. Whatever can be known to fail is said before the work begins.
 pub fn run(args: &Render) -> Ended {
-    refuse_unbuilt(args)?;
     super::try_to_read(&args.file)?;
     let target = Target::new(args)?;
     interrupt::listen();
@@ -85,11 +84,16 @@ fn still(
     if args.stats.is_some() {
         data(stats::json(&args.file, &saving.shown(), None, &film, &prepared, &seconds))?;
     }
-    Ok(match film.is_complete() {
+    Ok(match is_made(&film, &prepared.settings) {
         false => Exit::Interrupted,
         true if !faults.is_empty() => Exit::Scene,
         true => Exit::Done,
     })
+}
+
+/// True where all of a picture is made that was asked for.
+fn is_made(film: &Film, settings: &ResolvedSettings) -> bool {
+    film.is_complete() && film.denoised == settings.denoise
 }
 
 /// Saves a picture whose rendering does not come to an end.
@@ -114,6 +118,7 @@ fn prepare(
     let job = job(args);
     let settings = picture::settings(&evaluated.scene, &job).map_err(Failure::usage)?;
     refuse_passes(args, &settings)?;
+    refuse_denoise(args, &settings)?;
     target.refuse_too_large(&settings, animation.options().limits.memory)?;
     let mut diagnostics = evaluated.diagnostics;
     let (prepared, found) = seconds.world.measure(|| animation.prepare(evaluated.scene, &job, settings));
@@ -139,6 +144,7 @@ fn job(args: &Render) -> Job {
         crop: args.crop,
         error: args.error,
         layers: args.layers.iter().map(|layer| (*layer).into()).collect(),
+        denoise: args.denoise,
         threads: args.threads,
     }
 }
@@ -162,7 +168,10 @@ fn render(
     };
     let passes = args.budget.and_then(|seconds| Some((seconds, prepared.passes()?)));
     interrupt::while_rendering(rescue, || match passes {
-        Some((seconds, passes)) => within(seconds, passes, prepared.settings.samples, &film, bar),
+        Some((seconds, passes)) => {
+            within(seconds, passes, prepared.settings.samples, &film, bar);
+            prepared.filter(&film, bar, &interrupt::CANCEL);
+        }
         None => prepared.render_onto(&film, bar, &interrupt::CANCEL),
     });
     let film = Arc::into_inner(film).expect("who would have saved it is gone");
@@ -201,8 +210,19 @@ fn refuse_passes(args: &Render, settings: &ResolvedSettings) -> Result<(), Failu
     Err(Failure::usage(fault))
 }
 
-fn refuse_unbuilt(args: &Render) -> Result<(), Failure> {
-    if args.denoise { Err(Failure::not_built("`--denoise`")) } else { Ok(()) }
+/// What the filter of noise cannot be used with.
+fn refuse_denoise(args: &Render, settings: &ResolvedSettings) -> Result<(), Failure> {
+    let fault = match (args.denoise, args.crop) {
+        (false, _) => return Ok(()),
+        (true, Some(_)) => {
+            "`--denoise` goes by the pixels around each, which `--crop` leaves out: render the whole picture"
+        }
+        (true, None) if settings.samples < 2 => {
+            "`--denoise` finds the noise of a pixel by its samples, and one tells nothing: write `--samples 2` or more"
+        }
+        (true, None) => return Ok(()),
+    };
+    Err(Failure::usage(fault))
 }
 
 /// Time that a part of the work took.

@@ -40,6 +40,11 @@ pub fn line(name: &str, film: &Film, settings: &ResolvedSettings, seconds: &Seco
         true => String::new(),
         false => format!("  ({:.0} % done when interrupted)", 100.0 * film.share_finished()),
     };
+    let part = match (film.denoised, settings.denoise) {
+        (true, _) => part + "  denoised",
+        (false, true) if film.is_complete() => part + "  (interrupted before it was denoised)",
+        (false, _) => part,
+    };
     format!("{name}  {}{part}", made(settings, film.report.taken, film.report.rays.total(), seconds))
 }
 
@@ -116,6 +121,7 @@ pub fn json(
         "seed": settings.seed,
         "sampler": settings.sampler.word(),
         "finished": film.share_finished(),
+        "denoised": film.denoised,
         "seconds": {
             "evaluate": seconds.evaluate.0,
             "world": seconds.world.0,

@@ -113,7 +113,7 @@ impl Reel<'_, '_> {
         let Some(prepared) = prepared else { return Ok(Some(Exit::Scene)) };
         let left = self.left_undone(frame);
         let film = seconds.render.measure(|| render(self.args, &prepared, &self.bar, left));
-        if !film.is_complete() {
+        if !super::is_made(&film, &prepared.settings) {
             return Ok(Some(Exit::Interrupted));
         }
         let faults = picture::faults(&film);

@@ -5,7 +5,8 @@ use crate::args::Render;
 use crate::place::Place;
 use crate::speech::{Exit, Failure};
 use ogee::diag::SourceMap;
-use ogee::render::features::{Layer, Source};
+use ogee::render::denoise;
+use ogee::render::features::{Features, Layer, Source};
 use ogee::render::film::Film;
 use ogee::render::output::movie::{Movie, MovieFormat};
 use ogee::render::output::{self, Development, Format, Metadata, Origin};
@@ -96,9 +97,10 @@ impl Target {
         /// Three f64 of the film, its flag, and the encoder's copy in f32.
         const BYTES_A_PIXEL: u64 = 24 + 1 + 16;
         /// What is kept of a pixel for layers, and their encoder's copy.
-        const BYTES_OF_LAYERS: u64 = 112 + 56;
-        let of_layers = if settings.layers.is_empty() { 0 } else { BYTES_OF_LAYERS };
-        let a_pixel = BYTES_A_PIXEL + of_layers;
+        const BYTES_OF_LAYERS: u64 = size_of::<Features>() as u64 + 56;
+        let of_layers = if settings.kept().is_empty() { 0 } else { BYTES_OF_LAYERS };
+        let of_filter = if settings.denoise { denoise::BYTES_A_PIXEL } else { 0 };
+        let a_pixel = BYTES_A_PIXEL + of_layers + of_filter;
         let [w, h] = settings.size;
         let pixels = u64::from(settings.crop.width) * u64::from(settings.crop.height);
         if pixels.saturating_mul(a_pixel) > memory {
@@ -161,7 +163,7 @@ impl Saving {
     /// Writes it.
     pub fn save(&self, film: &Film) -> Result<(), Failure> {
         let about = Metadata { sources: self.origins(film), ..self.about.clone() };
-        let about = Metadata { samples: samples(&about, film), ..about };
+        let about = Metadata { samples: samples(&about, film), denoise: film.denoised, ..about };
         let bytes = output::encode(film, self.format, &self.develop, &about);
         self.place.write(&bytes.map_err(|fault| cannot_write(&self.path, fault))?)
     }
