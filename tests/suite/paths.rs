@@ -2,6 +2,7 @@
 
 use crate::stage::*;
 use glam::DVec3;
+use ogee::render::features::{Layer, Layers as Kept};
 use ogee::render::settings::ResolvedSettings;
 use ogee::scene::*;
 use ogee::world::World;
@@ -247,4 +248,31 @@ fn two_mirrors_that_lose_nothing_end() {
     let nodes = vec![object(plane(Y, 0.0), &mirror(1.0)), object(plane(-Y, -1.0), &mirror(1.0)), sky(1.0)];
     let (seen, sampler) = seen_by(&paths(64, 0), &world(nodes), DVec3::new(0.0, 0.5, 0.0), Y);
     assert!(seen.is_finite() && sampler.rays.reflected < 5000, "{:?}", sampler.rays);
+}
+
+#[test]
+fn a_white_rough_metal_under_a_white_sky_is_white_at_every_pixel() {
+    let eye = camera(4.0 * DVec3::Z, DVec3::ZERO, 35.0);
+    let layers = Kept::NONE.with(Layer::Variance);
+    for (roughness, tracer) in [0.05, 0.08, 0.15, 0.3, 0.5, 0.75, 1.0]
+        .into_iter()
+        .flat_map(|r| [(r, TracerKind::Path), (r, TracerKind::Whitted), (r, TracerKind::MonteCarlo)])
+    {
+        let white = layered(0.0, |l| {
+            (l.metal, l.roughness) = (Texture::number(1.0), Texture::number(roughness));
+        });
+        let world = world(vec![object(sphere(DVec3::ZERO, 1.0), &white), sky(1.0)]);
+        let settings = ResolvedSettings { tracer, layers, samples: 256, ..settings([12, 12]) };
+        let film = picture(&world, &eye, &settings);
+        for (pixel, features) in film.pixels.iter().zip(&film.features) {
+            let (off, sigma) = ((pixel.x - 1.0).abs(), features.variance.x.sqrt());
+            assert!(
+                off <= 3.0 * sigma + 0.006,
+                "{tracer:?}, roughness {roughness}: {} with {sigma}",
+                pixel.x
+            );
+            assert!(off <= 0.05, "{tracer:?}, roughness {roughness}: {}", pixel.x);
+        }
+        assert!((film.mean().x - 1.0).abs() < 0.006, "{tracer:?}, {roughness}: {}", film.mean().x);
+    }
 }

@@ -65,6 +65,24 @@ pub fn dielectric_of(r0: Rgb, cos_o: f64) -> Rgb {
     Rgb::new(channel(r0.x), channel(r0.y), channel(r0.z))
 }
 
+/// The mean of [`schlick`] over all directions by their cosines.
+pub fn mean_of_schlick(r0: Rgb) -> Rgb {
+    r0 + (Rgb::ONE - r0) / 21.0
+}
+
+/// The mean of [`dielectric_of`] over all directions by their cosines, within 0.01: Kulla & Conty's fit (2017).
+pub fn mean_of_dielectric_of(r0: Rgb) -> Rgb {
+    let channel = |r0: f64| {
+        let root = r0.clamp(0.0, 1.0).sqrt();
+        let eta = (1.0 + root) / (1.0 - root).max(f64::MIN_POSITIVE);
+        if eta < MOST_ETA { (eta - 1.0) / (4.085_67 + 1.000_71 * eta) } else { r0 }
+    };
+    Rgb::new(channel(r0.x), channel(r0.y), channel(r0.z))
+}
+
+/// Up to this index the fit was made; beyond it nearly all is reflected at any angle.
+const MOST_ETA: f64 = 400.0;
+
 fn pow5(x: f64) -> f64 {
     let x = x.clamp(0.0, 1.0);
     (x * x) * (x * x) * x
@@ -165,6 +183,19 @@ mod tests {
     fn no_boundary_reflects_nothing_even_at_grazing_angles() {
         assert_eq!(dielectric(0.0, 1.0), 0.0);
         assert_eq!(dielectric(0.0, 1.5), 1.0);
+    }
+
+    #[test]
+    fn means_over_all_directions_are_those_integrals() {
+        let n = 4000;
+        let cosines = || (0..n).map(|i| (f64::from(i) + 0.5) / f64::from(n));
+        let mean = |f: &dyn Fn(f64) -> f64| cosines().map(|c| 2.0 * c * f(c)).sum::<f64>() / f64::from(n);
+        for r0 in [0.02, 0.04, 0.2, 0.5, 0.9, 0.98, 1.0] {
+            let r = Rgb::splat(r0);
+            let (exact, fit) = (mean(&|c| dielectric_of(r, c).x), mean_of_dielectric_of(r).x);
+            assert!((exact - fit).abs() < 0.01, "{r0}: {exact} and {fit}");
+            assert!((mean(&|c| schlick(r, c).x) - mean_of_schlick(r).x).abs() < 1e-6);
+        }
     }
 
     #[test]

@@ -4,6 +4,7 @@
 //! The meaning, one for all tracers: with mirror share r(θ), light is sent on by (1 − r)·base + r·mirror, where the base is
 //! diffuse ρ/π, a specular lobe and what is let through. `wo` and `wi` leave the surface. Surfaces shade on both sides.
 
+mod energy;
 pub mod fresnel;
 pub mod lobes;
 mod normal;
@@ -13,6 +14,7 @@ use super::hit::Hit;
 use super::texture::{self, Sampled, TexturePoint};
 use super::{Ray, World};
 use crate::scene::{Fresnel, Lobe, Material, Rgb};
+use energy::Lost;
 use fresnel::{reflect, refract};
 use glam::{DVec2, DVec3};
 use lobes::Ggx;
@@ -206,7 +208,8 @@ impl Bsdf {
         }
     }
 
-    /// The mirror as a lobe, times the cosine; 0 where it is smooth and so has no width.
+    /// The mirror as a lobe, times the cosine, with what bounces several times between its facets; 0 where it is smooth and so has no
+    /// width.
     #[inline]
     pub fn gloss(&self, wi: DVec3) -> Rgb {
         if !self.is_glossy() {
@@ -217,23 +220,53 @@ impl Bsdf {
             return Rgb::ZERO;
         }
         let half = (self.wo + wi).normalize_or(self.normal);
-        self.mirror_share(self.wo.dot(half)) * (self.ggx().lobe(self.wo, wi) * lit)
+        let first = self.mirror_share(self.wo.dot(half)) * self.ggx().lobe(self.wo, wi);
+        let further = self.facets_mean().map_or(Rgb::ZERO, |mean| {
+            Lost::by(self.roughness).lobe(mean, self.wo.dot(self.normal), wi.dot(self.normal))
+        });
+        (first + further) * lit
     }
 
-    /// The mirrored direction and its share. A rough mirror's is chosen by u, in (0, 1)².
+    /// The share that facets of an opaque mirror reflect on average over all directions. None where light is let through: what
+    /// bounces between facets of glass partly goes in, and is lost here.
+    fn facets_mean(&self) -> Option<Rgb> {
+        match self.mirror {
+            Mirror::None | Mirror::Boundary(..) => None,
+            Mirror::Constant(r) => Some(r),
+            Mirror::Schlick(r0) => Some(fresnel::mean_of_schlick(r0)),
+            Mirror::Exact(r0) => Some(fresnel::mean_of_dielectric_of(r0)),
+        }
+    }
+
+    /// Share of light from all around that is sent to `wo` by bouncing several times between facets.
+    fn rebounced(&self) -> Rgb {
+        if !self.is_glossy() {
+            return Rgb::ZERO;
+        }
+        self.facets_mean().map_or(Rgb::ZERO, |mean| {
+            let lost = Lost::by(self.roughness);
+            lost.share(mean) * lost.at(self.wo.dot(self.normal))
+        })
+    }
+
+    /// The mirrored direction and its share. A rough mirror's is chosen by u, in (0, 1)²; what bounces several times between its facets is
+    /// taken to come from there too.
     pub fn mirrored(&self, u: DVec2) -> Option<Scattered> {
         if matches!(self.mirror, Mirror::None) {
             return None;
         }
         let (facet, rough) = self.facet(u);
         let weight = self.mirror_share(self.wo.dot(facet).clamp(0.0, 1.0));
-        let direction = normal::onto_side(reflect(self.wo, facet), self.geometric);
-        let carried = if rough {
-            self.ggx().carried(self.wo.dot(self.normal), direction.dot(self.normal))
-        } else {
-            1.0
+        let reflected = reflect(self.wo, facet);
+        let direction = normal::onto_side(reflected, self.geometric);
+        let weight = match rough {
+            true => {
+                let carried = self.ggx().carried(self.wo.dot(self.normal), reflected.dot(self.normal));
+                weight * carried + self.rebounced()
+            }
+            false => weight,
         };
-        (weight != Rgb::ZERO && carried > 0.0).then(|| Scattered { direction, weight: weight * carried })
+        (weight != Rgb::ZERO).then_some(Scattered { direction, weight })
     }
 
     /// The direction beyond the surface and the share let through. None where nothing is, or all is reflected.
