@@ -4,11 +4,12 @@
 //! reader can plot again without measuring again. Topological errors (missed, spurious, wrong first) are counts of their
 //! own and never averaged into magnitudes.
 //!
-//! Tracers are measured on scenes instead ([`tracers`]).
+//! Tracers are measured on scenes instead ([`tracers`]), and trees on meshes ([`accelerators`]).
 //!
 //! Case sets are seeded, so that every error comes again; what is compared with is kept here (`naive`) and not in the rooms of the
 //! kernels. A [`trial::Trial`] holds the variants of one component on one case set.
 
+pub mod accelerators;
 pub mod components;
 pub mod measure;
 mod naive;

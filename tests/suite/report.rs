@@ -209,3 +209,21 @@ fn tracers_are_measured_with_the_depth_that_the_scene_says() {
     let (_, rows) = store::read::<TracerRow>(&results).unwrap();
     assert_eq!(rows[0].rays, f64::from(12 * 6 * 4), "a camera ray a sample and no other: {rows:?}");
 }
+
+#[test]
+fn trees_are_measured_and_their_report_comes_again_from_results() {
+    let folder = Folder::with(&[("one.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nf 1 2 4\n")]);
+    folder.ogee("bench accelerators one.obj --quick --out trees").expect(0);
+    let text = |name: &str| String::from_utf8(folder.read(&format!("trees/{name}"))).unwrap();
+    let page = text("index.md");
+    for part in ["## one", "## ball", "growing-hills.svg", "| 2 | 4096 | kdtree | ", "| 0 of "] {
+        assert!(page.contains(part), "{part}: {page}");
+    }
+    let plot = text("growing-hills.svg");
+    std::fs::remove_file(folder.path().join("trees/growing-hills.svg")).unwrap();
+    folder.ogee("bench report trees").expect(0);
+    assert_eq!(text("growing-hills.svg"), plot);
+    assert_eq!(text("index.md"), page);
+    let missing = folder.ogee("bench accelerators nothing.obj").expect(3);
+    assert!(missing.stderr.contains("nothing.obj"), "{}", missing.stderr);
+}

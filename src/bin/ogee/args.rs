@@ -1,7 +1,9 @@
 //! The command line as clap reads it. Help, completions and man pages come from here and from nowhere else.
 
+mod accelerators;
 mod tracers;
 
+pub use accelerators::Accelerators;
 use clap::{Args, Parser, Subcommand, ValueEnum, ValueHint};
 use clap_complete::Shell;
 use ogee::render::features::Layer;
@@ -51,7 +53,7 @@ pub enum Command {
     Test(Test),
     /// Measure how far two pictures are apart
     Compare(Compare),
-    /// Measure kernels and tracers: speed against error
+    /// Measure kernels, tracers and trees: speed against error
     #[command(subcommand)]
     Bench(Bench),
     /// Print the reference page of a block, a function or a constant; or the whole reference
@@ -71,6 +73,8 @@ pub enum Bench {
     Kernels(Kernels),
     /// Render scenes by several tracers with several seeds, and write time against error, noise and bias apart
     Tracers(Tracers),
+    /// Put meshes under several trees, and write what building, memory and rays cost, and how that grows; exits 1 where a hit is wrong
+    Accelerators(Accelerators),
     /// Write the report again from results alone
     Report(BenchReport),
     /// Ask one variant for one input that a report names

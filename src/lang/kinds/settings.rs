@@ -176,7 +176,7 @@ pub static RENDER: Kind = Kind {
             "accelerator",
             &[&[Type::Word(&["bvh", "kdtree", "none"])]],
             "bvh",
-            "the tree that rays search; `none` tries every shape",
+            "the tree that rays search: boxes in boxes, or cells of space, which suit long shapes that overlap; `none` tries every shape. The picture is the same",
         ),
         Property::new(
             "exposure",

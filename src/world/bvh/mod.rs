@@ -6,6 +6,7 @@
 //! meet more rather than less, and so a box never hides what an exact test inside it would find.
 
 mod build;
+mod cost;
 pub(super) mod frame;
 pub(super) mod survey;
 #[cfg(test)]

@@ -1,5 +1,6 @@
 //! The one traversal: nearest boxes first, for closest hits and for any hit.
 
+mod counting;
 mod wide;
 
 use super::frame::{round_down, round_up};

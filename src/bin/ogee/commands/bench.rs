@@ -1,5 +1,6 @@
-//! `ogee bench`: kernels and tracers measured, and the reports of it.
+//! `ogee bench`: kernels, tracers and trees measured, and the reports of it.
 
+mod accelerators;
 mod tracers;
 
 use crate::args::{Bench, BenchReport, Kernels, Repro};
@@ -7,6 +8,7 @@ use crate::place::Place;
 use crate::speech::{Ended, Exit, Failure, data, reason, tell};
 use ogee::diag::nearest;
 use ogee::math::hex::parse_hex_list;
+use ogee::report::accelerators::{self as of_accelerators, AcceleratorRow};
 use ogee::report::components::{COMPONENTS, SEED};
 use ogee::report::page::{Page, render, short};
 use ogee::report::row::{Machine, Row};
@@ -18,12 +20,15 @@ use std::path::{Path, PathBuf};
 
 /// The mode of a report of tracers.
 const TRACERS: &str = "tracers";
+/// The mode of a report of trees.
+const ACCELERATORS: &str = "accelerators";
 
 /// Measures, reports, or asks for one input.
 pub fn run(args: &Bench) -> Ended {
     match args {
         Bench::Kernels(args) => kernels(args),
         Bench::Tracers(args) => tracers::run(args),
+        Bench::Accelerators(args) => accelerators::run(args),
         Bench::Report(args) => report(args),
         Bench::Repro(args) => repro(args),
     }
@@ -69,7 +74,7 @@ fn write(folder: &Path, pages: &[Page]) -> Result<(), Failure> {
     pages.iter().try_for_each(|page| Place::try_at(&folder.join(&page.name))?.write(page.text.as_bytes()))
 }
 
-/// Renders what the result files of a folder hold: kernels in the order of their components, or tracers by scene.
+/// Renders what the result files of a folder hold: kernels in the order of their components, tracers by scene, or trees by mesh.
 fn report(args: &BenchReport) -> Ended {
     let results = args.folder.join("results");
     let cannot = |what: &Path, error: &std::io::Error| {
@@ -84,11 +89,14 @@ fn report(args: &BenchReport) -> Ended {
         let text = std::fs::read_to_string(&file).map_err(|error| cannot(&file, &error))?;
         texts.push((file, text));
     }
-    let is_of_tracers = match texts.first() {
-        Some(_) => rows_of::<serde_json::Value>(&texts[..1])?.0.mode == TRACERS,
-        None => false,
+    let mode = match texts.first() {
+        Some(_) => rows_of::<serde_json::Value>(&texts[..1])?.0.mode,
+        None => String::new(),
     };
-    if is_of_tracers {
+    if mode == ACCELERATORS {
+        let (machine, rows) = rows_of::<AcceleratorRow>(&texts)?;
+        write(&args.folder, &of_accelerators::page::render(&machine, &rows))?;
+    } else if mode == TRACERS {
         let (machine, rows) = rows_of::<TracerRow>(&texts)?;
         write(&args.folder, &of_tracers::page::render(&machine, &rows))?;
     } else {

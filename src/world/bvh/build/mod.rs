@@ -7,12 +7,13 @@ mod boxes;
 mod cells;
 mod children;
 mod grid;
+mod median;
 mod split;
 mod subtree;
 
 use super::frame::Frame;
 use super::survey::{BY_ONE_THREAD, is_usable, survey};
-use super::{Tree, WIDTH};
+use super::{Node, Tree, WIDTH};
 use crate::math::Aabb;
 use boxes::{Box32, Boxed, Item};
 use rayon::prelude::*;
@@ -21,24 +22,42 @@ use split::{Bins, Part};
 /// About how many items there are to a node at the least, for the first guess at memory.
 const ITEMS_PER_NODE: usize = 8;
 
-pub(super) fn build(count: usize, bounds_of: impl Fn(usize) -> Aabb + Sync) -> Tree {
-    let (bounds, unbounded) = survey(count, &bounds_of);
+/// What is built over.
+struct Prepared {
+    bounds: Aabb,
+    unbounded: Vec<u32>,
+    frame: Frame,
+    items: Vec<Item>,
+}
+
+fn prepare(count: usize, bounds_of: &(impl Fn(usize) -> Aabb + Sync)) -> Prepared {
+    let (bounds, unbounded) = survey(count, bounds_of);
     let frame = Frame::around(bounds);
-    let mut items = narrow(count, &bounds_of, &frame);
+    Prepared { bounds, unbounded, frame, items: narrow(count, bounds_of, &frame) }
+}
+
+/// The tree of nodes over items in their order; those without a finite box follow it.
+fn finish(ready: Prepared, mut nodes: Vec<Node>, mut order: Vec<u32>) -> Tree {
+    nodes.shrink_to_fit();
+    let bounded = if nodes.is_empty() { 0 } else { ready.items.len() };
+    let unbounded = !ready.unbounded.is_empty();
+    order.extend(ready.unbounded);
+    Tree { frame: ready.frame, bounds: ready.bounds, unbounded, nodes, order, bounded }
+}
+
+pub(super) fn build(count: usize, bounds_of: impl Fn(usize) -> Aabb + Sync) -> Tree {
+    let mut ready = prepare(count, &bounds_of);
+    let items = &mut ready.items;
     let mut order = vec![0; items.len()];
     let mut nodes = Vec::with_capacity(items.len() / ITEMS_PER_NODE);
     // One box would only repeat the bounds. The root is a node even where everything fits a leaf.
     if items.len() > 1 {
-        let whole = Part::whole(&items);
-        subtree::grow(&mut items, whole, &mut order, &mut nodes, &mut Bins::new());
+        let whole = Part::whole(items);
+        subtree::grow(items, whole, &mut order, &mut nodes, &mut Bins::new());
     } else {
         order = items.iter().map(Item::number).collect();
     }
-    nodes.shrink_to_fit();
-    let bounded = if nodes.is_empty() { 0 } else { items.len() };
-    let any_unbounded = !unbounded.is_empty();
-    order.extend(unbounded);
-    Tree { frame, bounds, unbounded: any_unbounded, nodes, order, bounded }
+    finish(ready, nodes, order)
 }
 
 /// The items with a finite box, in order. Made in place: for a million of them a second copy would be felt.

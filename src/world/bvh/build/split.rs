@@ -149,7 +149,7 @@ fn partition<T: Copy>(run: &mut [T], is_left: impl Fn(&T, usize) -> bool) -> usi
 }
 
 /// Halves by number along the axis where the middles spread most.
-fn halve<T: Boxed>(run: &mut [T]) -> (usize, [Box32; 2]) {
+pub(super) fn halve<T: Boxed>(run: &mut [T]) -> (usize, [Box32; 2]) {
     let middles = middles_of(run);
     let spread = |a: usize| middles.upper(a) - middles.lower(a);
     let axis = (0..3).max_by(|&a, &b| spread(a).total_cmp(&spread(b))).unwrap_or(0);

@@ -20,7 +20,7 @@ pub(super) fn walk(nodes: &[Node], ray: &Narrow, t_max: f64, leaf: impl FnMut(Ra
 
 /// The test by plain operations: the definition of what the others do.
 #[inline(always)]
-fn meets(ray: &Narrow, node: &Node, limit: f32) -> Met {
+pub(super) fn meets(ray: &Narrow, node: &Node, limit: f32) -> Met {
     let (mut near, mut far) = ([0.0f32; WIDTH], [limit; WIDTH]);
     for a in 0..3 {
         let (enter, leave) = (&node.rows[ray.near_row[a] & 7], &node.rows[ray.far_row[a] & 7]);

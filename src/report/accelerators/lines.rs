@@ -1,0 +1,95 @@
+//! Rays through a mesh: from a camera, toward a light, diffusely on; and hard ones, through its edges and corners.
+
+use super::subject::{Line, Subject};
+use crate::geometry::mesh::Mesh;
+use crate::math::Aabb;
+use crate::math::random::Random;
+use glam::DVec3;
+
+/// A set of rays with its name, and whether any meeting will do.
+pub struct Set {
+    /// "camera", "shadow" or "diffuse".
+    pub name: &'static str,
+    /// True of shadow rays.
+    pub any: bool,
+    /// The rays.
+    pub lines: Vec<Line>,
+}
+
+/// What keeps a ray that starts on a surface from it, as a share of the mesh's size.
+const OFFSET: f64 = 1e-6;
+
+fn vector(random: &mut Random) -> DVec3 {
+    DVec3::from_array(std::array::from_fn(|_| random.between(-1.0, 1.0)))
+}
+
+/// Rays of a square picture of the whole mesh, `side` a side, row by row.
+pub fn camera(mesh: &Mesh, side: usize) -> Vec<Line> {
+    let bounds = Aabb::of(mesh.positions.iter().copied());
+    let (middle, reach) = (bounds.center(), bounds.size().length() / 2.0);
+    let forward = -DVec3::new(0.4, 0.5, 1.0).normalize();
+    let right = forward.cross(DVec3::Y).normalize();
+    let up = right.cross(forward);
+    let origin = middle - forward * reach * 2.0;
+    let part = move |i: usize| (i as f64 + 0.5) / side as f64 - 0.5;
+    let line = move |i: usize| {
+        let direction = (forward + right * part(i % side) - up * part(i / side)).normalize();
+        Line { origin, direction, t_max: f64::INFINITY }
+    };
+    (0..side * side).map(line).collect()
+}
+
+/// The three sets: a picture of `side` by `side`, and from each place that it sees a ray to a light and one anywhere.
+pub fn sets(mesh: &Mesh, seen_by: &Subject<'_>, side: usize) -> Vec<Set> {
+    let camera = camera(mesh, side);
+    let bounds = Aabb::of(mesh.positions.iter().copied());
+    let size = bounds.size().length();
+    let light = bounds.center() + DVec3::new(0.7, 1.0, 0.3) * size;
+    let mut random = Random::new(21);
+    let (mut shadow, mut diffuse) = (Vec::new(), Vec::new());
+    for line in &camera {
+        let Some((t, _)) = seen_by.meet(line, false) else { continue };
+        let origin = line.origin + line.direction * (t - OFFSET * size);
+        shadow.push(Line { origin, direction: light - origin, t_max: 1.0 });
+        diffuse.push(Line { origin, direction: vector(&mut random), t_max: f64::INFINITY });
+    }
+    vec![
+        Set { name: "camera", any: false, lines: camera },
+        Set { name: "shadow", any: true, lines: shadow },
+        Set { name: "diffuse", any: false, lines: diffuse },
+    ]
+}
+
+/// Rays anywhere through the mesh's surroundings; every eighth along an axis, every fourth from a corner of the mesh.
+pub fn anywhere(mesh: &Mesh, n: usize, seed: u64) -> Vec<Line> {
+    let bounds = Aabb::of(mesh.positions.iter().copied());
+    let (middle, size) = (bounds.center(), bounds.size().max_element());
+    let mut random = Random::new(seed);
+    let line = |i: usize| {
+        let from = match i % 4 {
+            0 => mesh.positions[random.below(mesh.positions.len())],
+            _ => middle + vector(&mut random) * size,
+        };
+        let direction = match i % 8 {
+            1 => DVec3::AXES[random.below(3)] * random.sign(),
+            _ => vector(&mut random),
+        };
+        Line { origin: from, direction, t_max: f64::INFINITY }
+    };
+    (0..n).map(line).collect()
+}
+
+/// Rays from around the mesh to its corners and to places on its edges, in turn.
+pub fn at_edges(mesh: &Mesh, n: usize, seed: u64) -> Vec<Line> {
+    let bounds = Aabb::of(mesh.positions.iter().copied());
+    let (middle, size) = (bounds.center(), bounds.size().max_element());
+    let mut random = Random::new(seed);
+    let line = |i: usize| {
+        let [a, b, _] =
+            mesh.triangles[random.below(mesh.triangles.len())].map(|p| mesh.positions[p as usize]);
+        let aim = if i.is_multiple_of(2) { a } else { a + (b - a) * random.unit() };
+        let origin = middle + vector(&mut random) * size;
+        Line { origin, direction: aim - origin, t_max: f64::INFINITY }
+    };
+    (0..n).map(line).collect()
+}

@@ -1,0 +1,128 @@
+//! Rows of trees as a page: a table for each mesh, and plots of how cost grows.
+
+use super::{AcceleratorRow, RayRow};
+use crate::report::page::{Page, names, short, slug};
+use crate::report::plot::lines::{Chart, Line, lines};
+use crate::report::row::Machine;
+use std::fmt::Write;
+
+/// `index.md` and a plot for each mesh that grows.
+pub fn render(machine: &Machine, rows: &[AcceleratorRow]) -> Vec<Page> {
+    let mut index = head(machine);
+    let mut pages = Vec::new();
+    // As files of results are read again.
+    let mut meshes = names(rows.iter().map(|row| &row.mesh));
+    meshes.sort_by_key(|mesh| slug(mesh));
+    for mesh in meshes {
+        let own: Vec<&AcceleratorRow> = rows.iter().filter(|row| row.mesh == mesh).collect();
+        let _ = write!(index, "\n## {mesh}\n");
+        plots(&mut index, &mut pages, &mesh, &own);
+        table(&mut index, &own);
+    }
+    pages.insert(0, Page { name: "index.md".into(), text: index });
+    pages
+}
+
+fn head(machine: &Machine) -> String {
+    let commit =
+        if machine.commit.is_empty() { String::new() } else { format!(", commit {}", machine.commit) };
+    format!(
+        "# Trees: what a ray costs\n\n\
+         `ogee bench accelerators` measured it, `ogee bench report` wrote this page from [results](results) alone. Version {version}{commit}, {build}, {cpu}, \
+         {target}; load {load:.1} at the start.\n\n\
+         All trees stand over the same triangles with the same test of each, one by one; scenes test several at once where they can. Bytes are for \
+         each triangle: the tree's nodes, and what is in its leaves; those of the mesh itself come on top and are the same for all. Rays are on one \
+         thread, in turn, the fastest of several rounds; building takes all threads. Nodes and tests are counted, and the same on every machine; the \
+         nodes of `bvh` have eight children, those of `kdtree` two, and its leaves count as nodes. Wrong are rays that meet \
+         another triangle, at another distance, or are blocked otherwise, than by a test of every triangle: half of them go through edges and corners. \
+         `bvh` and `kdtree` are what scenes use; the others are what they are measured against.\n",
+        version = machine.version,
+        build = machine.build,
+        cpu = machine.cpu,
+        target = machine.target,
+        load = machine.load,
+    )
+}
+
+/// What is drawn over triangles, by title and axis.
+type Figure = (&'static str, &'static str, fn(&AcceleratorRow) -> f64);
+
+const OVER_TRIANGLES: [Figure; 5] = [
+    ("Building", "seconds", |row| row.build),
+    ("Memory", "bytes of tree and leaves", |row| (row.bytes[0] + row.bytes[1]) as f64),
+    ("Camera rays", "seconds a million", |row| 1.0 / ray(row, "camera").mrays),
+    ("Diffuse rays", "seconds a million", |row| 1.0 / ray(row, "diffuse").mrays),
+    ("Diffuse rays", "nodes and tests a ray", |row| ray(row, "diffuse").nodes + ray(row, "diffuse").tests),
+];
+
+const OVER_PIXELS: [Figure; 1] =
+    [("Camera rays", "seconds a picture", |row| row.pixels as f64 / ray(row, "camera").mrays / 1e6)];
+
+fn ray(row: &AcceleratorRow, name: &str) -> RayRow {
+    row.rays.iter().find(|ray| ray.name == name).cloned().unwrap_or_default()
+}
+
+fn plots(index: &mut String, pages: &mut Vec<Page>, mesh: &str, rows: &[&AcceleratorRow]) {
+    let chart = |figure: &Figure, grows: &str, x: fn(&AcceleratorRow) -> f64| {
+        let line = |builder: String| {
+            let own = rows.iter().filter(|row| row.grows == grows && row.builder == builder);
+            let points = own.map(|row| (x(row), (figure.2)(row))).filter(|(_, y)| y.is_finite() && *y > 0.0);
+            Line { points: points.collect(), label: builder, dashed: false }
+        };
+        Chart {
+            title: figure.0.into(),
+            cost_label: grows.into(),
+            error_label: figure.1.into(),
+            lines: names(rows.iter().map(|row| &row.builder)).into_iter().map(line).collect(),
+            guides: Vec::new(),
+            floor: 0.0,
+        }
+    };
+    let mut charts = Vec::new();
+    if rows.iter().any(|row| row.grows == "triangles") {
+        charts.extend(
+            OVER_TRIANGLES.iter().map(|figure| chart(figure, "triangles", |row| row.triangles as f64)),
+        );
+    }
+    if rows.iter().any(|row| row.grows == "pixels") {
+        charts.extend(OVER_PIXELS.iter().map(|figure| chart(figure, "pixels", |row| row.pixels as f64)));
+    }
+    if !charts.is_empty() {
+        let name = format!("{}.svg", slug(mesh));
+        let _ = write!(index, "\n![{mesh}: how cost grows]({name})\n");
+        pages.push(Page { text: lines(mesh, &charts), name });
+    }
+}
+
+fn table(index: &mut String, rows: &[&AcceleratorRow]) {
+    index.push_str(
+        "\n| triangles | pixels | tree | build, s | bytes a triangle: tree | leaves | named | camera, Mrays/s | nodes | tests | shadow | nodes | tests \
+         | diffuse | nodes | tests | wrong |\n|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n",
+    );
+    for row in rows {
+        let share = |bytes: usize| short(bytes as f64 / row.triangles.max(1) as f64);
+        let _ = write!(
+            index,
+            "| {} | {} | {} | {} | {} | {} | {} |",
+            row.triangles,
+            row.pixels,
+            row.builder,
+            short(row.build),
+            share(row.bytes[0]),
+            share(row.bytes[1]),
+            short(row.references as f64 / row.triangles.max(1) as f64),
+        );
+        for name in ["camera", "shadow", "diffuse"] {
+            let figures = match row.rays.iter().find(|ray| ray.name == name) {
+                Some(ray) => [ray.mrays, ray.nodes, ray.tests].map(short),
+                None => std::array::from_fn(|_| "–".into()),
+            };
+            let _ = write!(index, " {} |", figures.join(" | "));
+        }
+        let wrong = match row.checked {
+            0 => "–".into(),
+            n => format!("{} of {n}", row.wrong),
+        };
+        let _ = writeln!(index, " {wrong} |");
+    }
+}

@@ -1,0 +1,177 @@
+//! A mesh under a tree that some builder makes, asked ray by ray. One triangle test and one order of ties for all trees.
+
+use crate::geometry::mesh::Mesh;
+use crate::math::Aabb;
+use crate::scene::Accelerator;
+use crate::world::shape::LocalRay;
+use crate::world::shape::triangle::{Sheared, cut::cut};
+use crate::world::tree::Tree;
+use crate::world::{bvh, kdtree};
+use glam::DVec3;
+
+/// What makes the tree.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Builder {
+    /// The hierarchy of boxes that scenes use.
+    Bvh,
+    /// The same, halved by number.
+    BvhMedian,
+    /// The kd-tree that scenes use.
+    KdTree,
+    /// The same, its boxes cut and not its triangles.
+    KdTreeOfBoxes,
+    /// All triangles in turn.
+    List,
+}
+
+impl Builder {
+    /// All that make a tree.
+    pub const TREES: [Builder; 4] =
+        [Builder::Bvh, Builder::BvhMedian, Builder::KdTree, Builder::KdTreeOfBoxes];
+
+    /// As reports name it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Builder::Bvh => "bvh",
+            Builder::BvhMedian => "bvh, halves by number",
+            Builder::KdTree => "kdtree",
+            Builder::KdTreeOfBoxes => "kdtree of boxes",
+            Builder::List => "none",
+        }
+    }
+}
+
+/// What a ray asked of a tree.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Work {
+    /// Nodes visited, leaves of a kd-tree among them.
+    pub nodes: u64,
+    /// Triangles tested.
+    pub tests: u64,
+}
+
+/// A half-line: from where, to where, and how far in units of its direction.
+#[derive(Clone, Copy, Debug)]
+pub struct Line {
+    /// Where it starts.
+    pub origin: DVec3,
+    /// Where it goes.
+    pub direction: DVec3,
+    /// Meetings beyond do not count.
+    pub t_max: f64,
+}
+
+/// A mesh and its tree.
+pub struct Subject<'m> {
+    mesh: &'m Mesh,
+    /// In the tree's order.
+    triangles: Vec<[u32; 3]>,
+    tree: Tree,
+}
+
+impl<'m> Subject<'m> {
+    /// Builds the tree.
+    pub fn new(mesh: &'m Mesh, builder: Builder) -> Subject<'m> {
+        let n = mesh.triangles.len();
+        let corners = |i: usize| mesh.triangles[i].map(|p| mesh.positions[p as usize]);
+        let bounds = |i: usize| Aabb::of(corners(i));
+        let clip = |i: usize, cell: &Aabb| cut(corners(i), cell);
+        let tree = match builder {
+            Builder::Bvh => Tree::Bvh(bvh::Tree::build(n, bounds)),
+            Builder::BvhMedian => Tree::Bvh(bvh::Tree::build_median(n, bounds)),
+            Builder::KdTree => Tree::build_clipped(Accelerator::KdTree, n, bounds, clip),
+            Builder::KdTreeOfBoxes => Tree::KdTree(kdtree::Tree::build(n, bounds)),
+            Builder::List => Tree::Bvh(bvh::Tree::list(n, bounds)),
+        };
+        let triangles = tree.order().iter().map(|&i| mesh.triangles[i as usize]).collect();
+        Subject { mesh, triangles, tree }
+    }
+
+    /// Memory of the nodes and of what is in the leaves, bytes.
+    pub fn bytes(&self) -> [usize; 2] {
+        match &self.tree {
+            Tree::Bvh(tree) => tree.bytes(),
+            Tree::KdTree(tree) => tree.bytes(),
+        }
+    }
+
+    /// How often leaves name triangles.
+    pub fn references(&self) -> usize {
+        match &self.tree {
+            Tree::Bvh(tree) => tree.order().len(),
+            Tree::KdTree(tree) => tree.reference_count(),
+        }
+    }
+
+    /// How many nodes there are.
+    pub fn nodes(&self) -> usize {
+        self.tree.node_count()
+    }
+
+    /// The nearest meeting, or any: distance and triangle; of equally near ones the first triangle. None too for a line without direction.
+    #[inline]
+    pub fn meet(&self, line: &Line, any: bool) -> Option<(f64, u32)> {
+        let mut asked = Asked::new(self, line, any)?;
+        let LocalRay { origin, direction } = asked.ray;
+        self.tree.traverse(origin, direction, asked.limit, |range, _| asked.leaf(range));
+        asked.found()
+    }
+
+    /// What [`Subject::meet`] costs.
+    pub fn work(&self, line: &Line, any: bool) -> Work {
+        let Some(mut asked) = Asked::new(self, line, any) else { return Work::default() };
+        let LocalRay { origin, direction } = asked.ray;
+        let limit = asked.limit;
+        let mut work = Work::default();
+        let leaf = |range: std::ops::Range<usize>, _: f64| {
+            work.tests += range.len() as u64;
+            asked.leaf(range)
+        };
+        let mut nodes = 0;
+        match &self.tree {
+            Tree::Bvh(tree) => nodes = tree.traverse_counting(origin, direction, limit, leaf),
+            Tree::KdTree(tree) => tree.traverse_counting(origin, direction, limit, || nodes += 1, leaf),
+        }
+        Work { nodes, ..work }
+    }
+}
+
+/// A ray under way.
+struct Asked<'a, 'm> {
+    subject: &'a Subject<'m>,
+    ray: LocalRay,
+    sheared: Sheared,
+    per_line: f64,
+    limit: f64,
+    any: bool,
+    best: Option<(f64, u32)>,
+}
+
+impl<'a, 'm> Asked<'a, 'm> {
+    #[inline]
+    fn new(subject: &'a Subject<'m>, line: &Line, any: bool) -> Option<Asked<'a, 'm>> {
+        let (ray, per_line) = LocalRay::new(line.origin, line.direction)?;
+        let limit = line.t_max.next_down() * per_line;
+        Some(Asked { subject, sheared: Sheared::new(&ray), ray, per_line, limit, any, best: None })
+    }
+
+    #[inline(always)]
+    fn leaf(&mut self, range: std::ops::Range<usize>) -> f64 {
+        let Subject { mesh, triangles, tree } = self.subject;
+        for place in range {
+            let corners = triangles[place].map(|p| mesh.positions[p as usize]);
+            let Some(meet) = self.sheared.meet(corners, self.limit) else { continue };
+            let triangle = tree.order()[place];
+            if self.best.is_none_or(|(t, first)| meet.t < t || (meet.t == t && triangle < first)) {
+                self.best = Some((meet.t, triangle));
+                self.limit = meet.t;
+            }
+        }
+        if self.any && self.best.is_some() { -1.0 } else { self.limit }
+    }
+
+    #[inline]
+    fn found(&self) -> Option<(f64, u32)> {
+        self.best.map(|(t, triangle)| (t / self.per_line, triangle))
+    }
+}
