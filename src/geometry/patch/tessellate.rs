@@ -19,8 +19,9 @@ pub type Tolerance<'a> = &'a dyn Fn(&[DVec3]) -> f64;
 
 /// Most steps along an edge, and across a piece. Beyond, the tolerance is not kept: 2 · 1024² triangles a piece.
 const MOST_STEPS: usize = 1024;
-/// What of the tolerance an edge may use up with its own bend; the rest is for the strip beside it.
-const EDGE_SHARE: f64 = 0.5;
+/// What of the tolerance an edge may use up with its own bend; the rest is for the strip beside it. Little, as edges are outlines, and finer ones
+/// cost few triangles.
+const EDGE_SHARE: f64 = 0.2;
 
 /// Triangles within `tolerance` of all pieces of a patch, with normals and (u, v).
 pub fn tessellate(patch: &Patch, tolerance: Tolerance) -> Mesh {
@@ -114,20 +115,32 @@ impl Bend {
         (self.uu * du * du + 2.0 * self.uv * du * dv + self.vv * dv * dv) / 8.0
     }
 
-    /// Numbers of steps that keep the error allowed: a third of it for each term, the mixed one by shrinking both.
+    /// Numbers of steps that keep the error allowed with few triangles: of all with one product the error is least where both directions
+    /// have the same part in it; where nearly all of it is twist, squares. Two at least: the strips along opposite edges need a row between them.
     fn steps(&self, allowed: f64) -> (usize, usize) {
-        let alone = |m: f64| (3.0 * m / (8.0 * allowed)).sqrt().max(1.0);
-        let (mut n, mut m) = (alone(self.uu), alone(self.vv));
-        let mixed = 2.0 * self.uv / (n * m) / 8.0;
-        if mixed > allowed / 3.0 {
-            let shrink = (3.0 * mixed / allowed).sqrt();
-            (n, m) = (n * shrink, m * shrink);
+        let product = ((self.uu * self.vv).sqrt() + self.uv) / (4.0 * allowed);
+        let part = |own: f64| own + self.uv / 16.0;
+        let slant = (part(self.uu) / part(self.vv)).sqrt();
+        // What does not bend at all makes a NaN, which the larger leaves out.
+        let m = whole((product / slant).sqrt().max((self.vv / (4.0 * allowed)).sqrt()));
+        match self.across(self.uu, self.vv, m, allowed) {
+            2 => (2, self.across(self.vv, self.uu, 2, allowed).min(m)),
+            n => (n, m),
         }
-        // Two at least: the strips along opposite edges need a row between them.
-        let whole =
-            |n: f64| if n.is_finite() { (n.ceil() as usize).clamp(2, MOST_STEPS) } else { MOST_STEPS };
-        (whole(n), whole(m))
     }
+
+    /// Steps in a direction that bends by `own`, where there are m in the other, which bends by `other`: so many that
+    /// own/n² + 2 uv/(n m) + other/m² is 8 times what is allowed.
+    fn across(&self, own: f64, other: f64, m: usize, allowed: f64) -> usize {
+        let m = m as f64;
+        let (mixed, rest) = (self.uv / m, 8.0 * allowed - other / (m * m));
+        let n = (mixed + (mixed * mixed + own * rest).sqrt()) / rest;
+        whole(if rest > 0.0 { n } else { f64::INFINITY })
+    }
+}
+
+fn whole(steps: f64) -> usize {
+    if steps.is_finite() { (steps.ceil() as usize).clamp(2, MOST_STEPS) } else { MOST_STEPS }
 }
 
 /// The four points in the order that does not depend on the piece, and whether that is backwards.
@@ -453,6 +466,22 @@ mod tests {
             assert!((q - p).cross(r - p).dot(mesh.normals[t[0] as usize]) > 0.0);
         }
         assert_eq!(mesh.positions.len(), mesh.normals.len());
+    }
+
+    #[test]
+    fn steps_keep_the_error_and_no_fewer_of_either_direction_would() {
+        for uu in [0.0, 1e-9, 0.3, 1.0, 40.0] {
+            for uv in [0.0, 1e-9, 0.5, 7.0] {
+                for vv in [0.0, 1e-9, 0.3, 1.0, 40.0] {
+                    let bend = Bend { uu, uv, vv };
+                    let (n, m) = bend.steps(1e-4);
+                    let error = |n: usize, m: usize| bend.error(1.0 / n as f64, 1.0 / m as f64);
+                    assert!(error(n, m) <= 1e-4 * (1.0 + 1e-12), "{bend:?}: {n} × {m}");
+                    let needed = |n: usize, m: usize| n.min(m) > 1 && error(n, m) > 1e-4;
+                    assert!(n.max(m) == 2 || needed(n - 1, m) || needed(n, m - 1), "{bend:?}: {n} × {m}");
+                }
+            }
+        }
     }
 
     #[test]
