@@ -36,8 +36,8 @@ pub struct Csg {
     parts: Vec<Leaf>,
     /// Over the parts.
     tree: Tree,
-    /// Their boxes where these are so few that asking each takes less; else none.
-    boxes: Box<[Aabb]>,
+    /// Their boxes where these are so few that asking each takes less, else nothing; none of a part that whoever meets the whole's box meets too.
+    boxes: Box<[Option<Aabb>]>,
     bounds: Aabb,
 }
 

@@ -33,7 +33,9 @@ impl Csg {
         csg.outside = csg.tallies_outside();
         csg.tree = Tree::build(csg.parts.len(), |i| csg.parts[i].bounds());
         if csg.parts.len() <= FEW {
-            csg.boxes = csg.parts.iter().map(Leaf::bounds).collect();
+            let holds_all = |b: &Aabb| b.min.cmple(csg.bounds.min).all() && b.max.cmpge(csg.bounds.max).all();
+            let boxes = csg.parts.iter().map(Leaf::bounds);
+            csg.boxes = boxes.map(|part| (!holds_all(&part)).then_some(part)).collect();
         }
         csg
     }

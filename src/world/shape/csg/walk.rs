@@ -25,20 +25,9 @@ struct Walk {
     windows: Vec<Window>,
 }
 
-impl Walk {
-    const NEW: Walk = Walk {
-        meetings: Vec::new(),
-        tallies: Vec::new(),
-        inside: Vec::new(),
-        together: Vec::new(),
-        slow: None,
-        windows: Vec::new(),
-    };
-}
-
 thread_local! {
-    /// Kept between rays so that a walk does not allocate.
-    static SPARE: Cell<Walk> = const { Cell::new(Walk::NEW) };
+    /// Kept between rays so that a walk does not allocate; in a box, as it is taken and given back for every ray.
+    static SPARE: Cell<Option<Box<Walk>>> = const { Cell::new(None) };
 }
 
 /// Meetings at one place, and that at which the whole is entered or left.
@@ -131,7 +120,7 @@ impl Csg {
 
     /// Whether a ray starts inside.
     pub fn starts_inside(&self, ray: &LocalRay) -> bool {
-        let mut walk = SPARE.take();
+        let mut walk = SPARE.take().unwrap_or_default();
         self.gather(ray, &mut walk);
         if let Some(number) = walk.slow
             && self.matters(number, &walk)
@@ -144,7 +133,7 @@ impl Csg {
             });
         }
         let inside = self.operations[0].holds(walk.tallies[0]);
-        SPARE.set(walk);
+        SPARE.set(Some(walk));
         inside
     }
 
@@ -170,7 +159,7 @@ impl Csg {
     /// Calls `found` at each place up to the limit where the whole is entered or left, until it says false. Where any will do, the first may be
     /// told beside where it is.
     fn each_turn(&self, ray: &LocalRay, limit: f64, any: bool, found: impl FnMut(&Turn<'_>) -> bool) {
-        let mut walk = SPARE.take();
+        let mut walk = SPARE.take().unwrap_or_default();
         self.gather(ray, &mut walk);
         let slow = walk.slow.inspect(|number| {
             self.find_windows(*number, ray, limit, &mut walk);
@@ -213,7 +202,7 @@ impl Csg {
             steps.pass();
         }
         (walk.meetings, walk.windows) = (meetings, windows);
-        SPARE.set(walk);
+        SPARE.set(Some(walk));
     }
 
     /// Follows a slow part through a window, until `found` says false.
@@ -311,7 +300,7 @@ impl Csg {
             return;
         }
         for (number, part) in self.boxes.iter().enumerate() {
-            if clip(part, ray.origin, ray.direction, far).is_some() {
+            if part.is_none_or(|part| clip(&part, ray.origin, ray.direction, far).is_some()) {
                 self.gather_part(number as u32, ray, walk);
             }
         }
