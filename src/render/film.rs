@@ -64,8 +64,11 @@ pub struct Taken {
 impl Taken {
     /// Counts a pixel with so many samples.
     pub fn add(&mut self, samples: u32, enough: bool) {
-        let (least, most) = (samples, samples);
-        self.merge(Taken { pixels: 1, total: u64::from(samples), least, most, enough: enough.into() });
+        self.least = if self.pixels == 0 { samples } else { self.least.min(samples) };
+        self.most = self.most.max(samples);
+        self.pixels += 1;
+        self.total += u64::from(samples);
+        self.enough += u64::from(enough);
     }
 
     /// Takes the pixels of another part.

@@ -94,7 +94,9 @@ impl Pixel {
         if let Some(features) = &mut self.features {
             features.add(picture.settings.kept(), picture.world, ray.as_ref(), radiance);
         }
-        self.undefined = self.undefined.or(sampler.undefined);
+        if sampler.undefined.is_some() {
+            self.undefined = self.undefined.or(sampler.undefined);
+        }
         report.rays += sampler.rays;
         self.taken += 1;
         radiance

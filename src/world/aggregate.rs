@@ -186,6 +186,7 @@ impl Group {
     }
 
     /// The placement that holds, or is, the one numbered `id` from this group, and its position; none for 0.
+    #[inline]
     pub fn placement(&self, id: u64) -> Option<(u32, &Instance)> {
         if id == 0 {
             return None;

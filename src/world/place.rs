@@ -31,6 +31,7 @@ enum Steps<'w> {
 }
 
 impl<'w> Steps<'w> {
+    #[inline]
     fn push(&mut self, step: Step<'w>) {
         *self = match std::mem::replace(self, Steps::None) {
             Steps::None => Steps::One([step]),
@@ -56,6 +57,7 @@ impl<'w> std::ops::Deref for Steps<'w> {
 }
 
 impl World {
+    #[inline]
     fn path(&self, mut id: u64) -> Path<'_> {
         let mut path = Path { steps: Steps::None, aggregate: &self.aggregates[0] };
         while let Aggregate::Group(group) = path.aggregate
