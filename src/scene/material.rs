@@ -2,7 +2,7 @@
 
 use super::Rgb;
 use super::assets::image::Picture;
-use crate::diag::Span;
+use crate::diag::{SourceId, Span};
 use crate::math::Affine;
 use crate::math::field::{Fault, Field};
 use std::path::PathBuf;
@@ -248,6 +248,12 @@ pub struct SampledFunction {
 }
 
 impl SampledFunction {
+    /// A function of the point that no text stands for: its faults have no place of their own.
+    pub fn of_point(field: Field) -> SampledFunction {
+        let span = Span { source: SourceId(0), start: 0, end: 0 };
+        SampledFunction { field, input: SampleInput::Point, span, sites: Vec::new() }
+    }
+
     /// The place of the expression that a fault names.
     pub fn place(&self, fault: Fault) -> Span {
         self.sites.get(fault.site as usize).copied().unwrap_or(self.span)

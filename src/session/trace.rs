@@ -96,5 +96,5 @@ fn traced(hit: &Hit<'_>, at: Span) -> Result<Traced, Vec<Diagnostic>> {
         let said = Diagnostic::new(Code::Undefined, at, message).also(fault.span, "of this function");
         return Err(vec![said]);
     }
-    Ok(Traced { t: hit.t, point: hit.point, normal: hit.normal, uv: hit.uv })
+    Ok(Traced { t: hit.t, point: hit.point, normal: hit.normal, uv: hit.uv() })
 }

@@ -5,7 +5,7 @@
 //! *Physically Based Rendering* (4th ed.) §6.8.
 
 use super::shape::mesh::WornPlace;
-use super::shape::perpendicular;
+use super::shape::{Uv, perpendicular};
 use super::texture::TextureFault;
 use super::{PrimitiveId, Ray, RayKind};
 use crate::math::error::gamma;
@@ -28,7 +28,7 @@ pub struct Hit<'w> {
     /// Along growing u, of any length and not quite perpendicular to `normal`; 0 where u has no direction.
     pub(super) along_u: DVec3,
     /// Surface parameters.
-    pub uv: DVec2,
+    pub(super) uv: Uv,
     /// The point in the object's own space before its transforms, for solid patterns.
     pub local_point: DVec3,
     /// The place of the skin that was hit, for patterns of weights; none on what is no skin.
@@ -80,6 +80,11 @@ impl Hit<'_> {
     /// Unit tangent along growing u, perpendicular to `normal` (arbitrary where u has no direction).
     pub fn tangent(&self) -> DVec3 {
         tangent_for(self.normal, self.along_u)
+    }
+
+    /// Surface parameters.
+    pub fn uv(&self) -> DVec2 {
+        self.uv.get()
     }
 
     /// The point with its error and geometric normal.

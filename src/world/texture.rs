@@ -7,6 +7,7 @@ mod picture;
 pub use load::{load_pictures, load_skies};
 
 use super::Hit;
+use super::shape::Uv;
 use super::shape::mesh::WornPlace;
 use crate::diag::Span;
 use crate::math::Affine;
@@ -25,7 +26,7 @@ pub struct TexturePoint<'w> {
     /// The point in the object's own space before its transforms.
     pub local_point: DVec3,
     /// Surface parameters.
-    pub uv: DVec2,
+    pub uv: Uv,
     /// The point in the world.
     pub point: DVec3,
     /// Unit shading normal in the world.
@@ -86,7 +87,7 @@ pub fn opacity(texture: &Texture, at: &TexturePoint<'_>) -> Sampled<f64> {
     let PatternKind::Image(image) = &pattern.kind else { return number(texture, at) };
     match image.picture.get().filter(|picture| picture.has_alpha()) {
         Some(picture) => {
-            Ok(picture::sample(picture, image, moved(pattern, at).uv, Reading::Data)[3].clamp(0.0, 1.0))
+            Ok(picture::sample(picture, image, moved(pattern, at).uv.get(), Reading::Data)[3].clamp(0.0, 1.0))
         }
         None => number(texture, at),
     }
@@ -107,7 +108,7 @@ fn moved<'w>(pattern: &Pattern, at: &TexturePoint<'w>) -> TexturePoint<'w> {
     let pattern_from_surface = surface_from_pattern.inverse();
     TexturePoint {
         local_point: pattern_from_surface.point(at.local_point),
-        uv: uv_by(&pattern_from_surface, at.uv),
+        uv: uv_by(&pattern_from_surface, at.uv.get()).into(),
         ..*at
     }
 }
@@ -126,7 +127,7 @@ fn rule(pattern: &Pattern, at: &TexturePoint<'_>, reading: Reading) -> Sampled<R
         },
         PatternKind::Gradient(a, b) => mix(a, b, p.y, at, reading),
         PatternKind::Ramp(input, stops) => ramp(number(input, at)?, stops, at, reading),
-        PatternKind::Image(image) => from_picture(image, at.uv, reading),
+        PatternKind::Image(image) => from_picture(image, at.uv.get(), reading),
         PatternKind::Noise(a, b) => mix(a, b, noise(&p.to_array()), at, reading),
         PatternKind::Marble(a, b) => mix(a, b, veins(p), at, reading),
         PatternKind::Wood(a, b) => mix(a, b, rings(p), at, reading),
@@ -187,10 +188,11 @@ fn call(function: &SampledFunction, at: &TexturePoint<'_>) -> Sampled<Rgb> {
     let (p, n) = (at.local_point, at.normal);
     let result = match function.input {
         SampleInput::Point => function.field.eval(&p.to_array(), &mut out[..outputs]),
-        SampleInput::Uv => function.field.eval(&at.uv.to_array(), &mut out[..outputs]),
+        SampleInput::Uv => function.field.eval(&at.uv.get().to_array(), &mut out[..outputs]),
         SampleInput::Hit => {
             let p = at.point;
-            let hit = [p.x, p.y, p.z, n.x, n.y, n.z, at.uv.x, at.uv.y, at.t];
+            let uv = at.uv.get();
+            let hit = [p.x, p.y, p.z, n.x, n.y, n.z, uv.x, uv.y, at.t];
             function.field.eval(&hit, &mut out[..outputs])
         }
     };

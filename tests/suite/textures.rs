@@ -111,7 +111,7 @@ fn many_materials_of_one_picture_read_it_once_and_from_below() {
     let cache = AssetCache::new(&loader);
     assert!(load_pictures(&materials, &cache).is_empty());
     assert_eq!(loader.0.load(Ordering::Relaxed), 1);
-    let at = |v| TexturePoint { uv: glam::DVec2::new(0.5, v), ..TexturePoint::default() };
+    let at = |v| TexturePoint { uv: glam::DVec2::new(0.5, v).into(), ..TexturePoint::default() };
     let bottom = colour(&materials[49].diffuse, &at(0.25)).unwrap();
     assert_eq!(bottom.to_array(), [srgb_decode(128.0 / 255.0), 0.0, 0.0]);
     assert_eq!(colour(&materials[0].diffuse, &at(0.75)).unwrap().to_array(), [1.0; 3]);

@@ -185,7 +185,7 @@ impl AreaLight {
             Texture::Pattern(_) => {
                 let local_point = self.local_from_world.point(at.point);
                 let (point, normal, t) = (at.point, at.normal, distance);
-                let point = TexturePoint { local_point, uv, point, normal, t, worn: None };
+                let point = TexturePoint { local_point, uv: uv.into(), point, normal, t, worn: None };
                 texture::colour(&self.emission, &point).unwrap_or(Rgb::ZERO)
             }
         }

@@ -182,7 +182,7 @@ impl Cone {
                 geometric_normal: normal,
                 normal,
                 tangent: axis.cross(out),
-                uv: DVec2::new(u, y / self.height),
+                uv: DVec2::new(u, y / self.height).into(),
             };
         }
         let (center, normal, radius) =
@@ -194,7 +194,7 @@ impl Cone {
             geometric_normal: normal,
             normal,
             tangent: u,
-            uv: (DVec2::new(across.dot(u), across.dot(v)) / radius + 1.0) / 2.0,
+            uv: ((DVec2::new(across.dot(u), across.dot(v)) / radius + 1.0) / 2.0).into(),
         }
     }
 

@@ -74,7 +74,7 @@ impl Cuboid {
             geometric_normal: normal,
             normal,
             tangent: u,
-            uv: DVec2::new(place(u), place(v)),
+            uv: DVec2::new(place(u), place(v)).into(),
         }
     }
 

@@ -29,7 +29,7 @@ impl Disc {
             geometric_normal: n,
             normal: n,
             tangent: u,
-            uv: (DVec2::new(q.dot(u), q.dot(v)) / self.0.radius + 1.0) / 2.0,
+            uv: ((DVec2::new(q.dot(u), q.dot(v)) / self.0.radius + 1.0) / 2.0).into(),
         }
     }
 

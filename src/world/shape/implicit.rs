@@ -15,19 +15,18 @@ mod search;
 mod tests;
 
 use super::cuboid::Cuboid;
-use super::{LocalRay, Meet, Surface, perpendicular};
+use super::{LocalRay, Meet, Surface, Uv, perpendicular};
 use crate::math::Aabb;
-use crate::math::elementary::{atan2, cbrt};
+use crate::math::elementary::cbrt;
 use crate::math::error::gamma;
 use crate::math::field::{Enclosed, Encloser, FaultKind, Field, Linear, Linearizer};
 use crate::math::interval::Interval;
 use crate::scene::SampledFunction;
 use crate::world::texture::TextureFault;
 use cells::Cells;
-use glam::{DVec2, DVec3};
+use glam::DVec3;
 pub use search::{Event, NOWHERE, Window};
 use std::cell::Cell;
-use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 
 /// The surface itself.
@@ -106,24 +105,29 @@ impl Implicit {
     }
 
     pub(super) fn meet(&self, ray: &LocalRay, limit: f64) -> Option<Meet> {
+        self.meet_counting(ray, limit).0
+    }
+
+    /// The nearest meeting in (0, limit], and how often the function was bounded or evaluated to find it.
+    pub fn meet_counting(&self, ray: &LocalRay, limit: f64) -> (Option<Meet>, u32) {
         self.first(ray, Window { from: 0.0, to: limit, rough: NOWHERE })
     }
 
     /// Any meeting in (0, limit].
     pub(super) fn meet_any(&self, ray: &LocalRay, limit: f64) -> Option<Meet> {
-        self.first(ray, Window { from: 0.0, to: limit, rough: (0.0, limit) })
+        self.first(ray, Window { from: 0.0, to: limit, rough: (0.0, limit) }).0
     }
 
-    fn first(&self, ray: &LocalRay, window: Window) -> Option<Meet> {
+    fn first(&self, ray: &LocalRay, window: Window) -> (Option<Meet>, u32) {
         let mut first = None;
-        search::each_event(self, ray, window, |event| match event {
+        let evaluations = search::each_event(self, ray, window, |event| match event {
             Event::Start(_) => true,
             Event::Meet(meet, _) => {
                 first = Some(meet);
                 false
             }
         });
-        first
+        (first, evaluations)
     }
 
     pub(super) fn crossings(&self, ray: &LocalRay, out: &mut Vec<Meet>) {
@@ -190,14 +194,13 @@ impl Implicit {
 
     fn marked(&self, point: DVec3, normal: DVec3, error: f64) -> Surface {
         let out = (point - self.bounds().center()).try_normalize().unwrap_or(DVec3::Y);
-        let horizontal = DVec2::new(out.x, out.z).length();
         Surface {
             point,
             error: DVec3::splat(error),
             geometric_normal: normal,
             normal,
             tangent: perpendicular(normal),
-            uv: DVec2::new(0.5 + atan2(out.x, out.z) / TAU, 0.5 + atan2(out.y, horizontal) / PI),
+            uv: Uv::Around(out),
         }
     }
 

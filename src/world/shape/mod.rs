@@ -35,10 +35,12 @@ pub use swept::{Form, Swept};
 pub use torus::Torus;
 pub use triangle::Triangle;
 
+use crate::math::elementary::atan2;
 use crate::math::exact::{exponent, power_of_two};
 use crate::math::{Aabb, Affine};
 use crate::world::texture::TextureFault;
 use glam::{DVec2, DVec3};
+use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 
 /// A ray in some space, its direction scaled by a power of two to a largest component in [1, 2).
@@ -114,7 +116,41 @@ pub struct Surface {
     /// Along growing u; 0 where u has no direction.
     pub tangent: DVec3,
     /// Surface parameters.
-    pub uv: DVec2,
+    pub uv: Uv,
+}
+
+/// Surface parameters, or what they follow from: few materials ask.
+#[derive(Clone, Copy, Debug)]
+pub enum Uv {
+    /// They are known.
+    At(DVec2),
+    /// By longitude from −z and latitude of a unit vector, 0 … 1 each.
+    Around(DVec3),
+}
+
+impl Uv {
+    /// The parameters.
+    pub fn get(self) -> DVec2 {
+        match self {
+            Uv::At(uv) => uv,
+            Uv::Around(out) => {
+                let horizontal = DVec2::new(out.x, out.z).length();
+                DVec2::new(0.5 + atan2(out.x, out.z) / TAU, 0.5 + atan2(out.y, horizontal) / PI)
+            }
+        }
+    }
+}
+
+impl Default for Uv {
+    fn default() -> Uv {
+        Uv::At(DVec2::ZERO)
+    }
+}
+
+impl From<DVec2> for Uv {
+    fn from(uv: DVec2) -> Uv {
+        Uv::At(uv)
+    }
 }
 
 /// The shapes. Small ones are held in place, so that a million spheres are one array.

@@ -57,7 +57,7 @@ impl PatchShape {
             geometric_normal: normal,
             normal,
             tangent,
-            uv: DVec2::new(global_u, global_v),
+            uv: DVec2::new(global_u, global_v).into(),
         }
     }
 

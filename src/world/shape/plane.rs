@@ -93,7 +93,7 @@ impl Plane {
             geometric_normal: n,
             normal: n,
             tangent: u,
-            uv: DVec2::new(point.dot(u), point.dot(n.cross(u))),
+            uv: DVec2::new(point.dot(u), point.dot(n.cross(u))).into(),
         }
     }
 }
@@ -126,7 +126,7 @@ mod tests {
                 assert_eq!(plane.height(p).to_bits(), plane.height_of_any(p).to_bits(), "{plane:?} {p}");
                 let (u, v) = upright(normal);
                 let surface = plane.surface(&ray, &Meet::at(1.0));
-                assert_eq!((surface.tangent, surface.uv.y), (u, surface.point.dot(v)), "{normal}");
+                assert_eq!((surface.tangent, surface.uv.get().y), (u, surface.point.dot(v)), "{normal}");
             }
         }
     }

@@ -50,7 +50,7 @@ impl Rect {
             geometric_normal: self.normal,
             normal: self.normal,
             tangent: a,
-            uv: (DVec2::new(meet.a, meet.b) + 1.0) / 2.0,
+            uv: ((DVec2::new(meet.a, meet.b) + 1.0) / 2.0).into(),
         }
     }
 

@@ -3,13 +3,11 @@
 //! Haines, Günther & Akenine-Möller, *Precision improvements for ray/sphere intersection*, Ray Tracing Gems ch. 7: the
 //! discriminant from the ray's distance to the centre, never from b² − 4ac.
 
-use super::{LocalRay, Meet, Surface, ahead, padded};
-use crate::math::elementary::atan2;
+use super::{LocalRay, Meet, Surface, Uv, ahead, padded};
 use crate::math::error::{UNIT_ROUNDOFF, gamma};
 use crate::math::exact::Double;
 use crate::math::{Aabb, Affine};
-use glam::{DVec2, DVec3};
-use std::f64::consts::{PI, TAU};
+use glam::DVec3;
 
 /// |p − center| = radius.
 #[derive(Clone, Copy, Debug)]
@@ -97,14 +95,13 @@ impl Sphere {
         let from_center = (ray.origin - self.center) + ray.direction * meet.t;
         let normal = from_center.try_normalize().unwrap_or(DVec3::Y);
         let point = self.center + normal * self.radius;
-        let horizontal = DVec2::new(normal.x, normal.z).length();
         Surface {
             point,
             error: normal.abs() * (self.radius * gamma(8)) + point.abs() * gamma(2),
             geometric_normal: normal,
             normal,
             tangent: DVec3::new(normal.z, 0.0, -normal.x),
-            uv: DVec2::new(0.5 + atan2(normal.x, normal.z) / TAU, 0.5 + atan2(normal.y, horizontal) / PI),
+            uv: Uv::Around(normal),
         }
     }
 

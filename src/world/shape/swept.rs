@@ -112,7 +112,7 @@ impl Swept {
             geometric_normal: at.normal,
             normal: at.normal,
             tangent: at.tangent,
-            uv: at.uv,
+            uv: at.uv.into(),
         }
     }
 

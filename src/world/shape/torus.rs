@@ -139,7 +139,7 @@ impl Torus {
             geometric_normal: normal,
             normal,
             tangent: self.tilted(DVec3::new(-out.y, out.x, 0.0)),
-            uv: DVec2::new(turn(around), turn(tube)),
+            uv: DVec2::new(turn(around), turn(tube)).into(),
         }
     }
 

@@ -32,16 +32,15 @@ const NEAR: f64 = 1.0 / (1u64 << 22) as f64;
 impl Sheared {
     /// Prepares a ray.
     pub fn new(ray: &LocalRay) -> Sheared {
-        let size = ray.direction.abs();
-        let z = if size.x > size.y && size.x > size.z {
-            0
+        let (d, size) = (ray.direction, ray.direction.abs());
+        let (z, [x, y, along]) = if size.x > size.y && size.x > size.z {
+            (0, [d.y, d.z, d.x])
         } else if size.y > size.z {
-            1
+            (1, [d.z, d.x, d.y])
         } else {
-            2
+            (2, [d.x, d.y, d.z])
         };
-        let d = ray.direction.to_array();
-        let shear = [d[(z + 1) % 3] / d[z], d[(z + 2) % 3] / d[z], 1.0 / d[z]];
+        let shear = [x / along, y / along, 1.0 / along];
         Sheared { origin: ray.origin, direction: ray.direction, z, shear }
     }
 
@@ -181,6 +180,7 @@ pub struct Corners {
 /// The surface of a triangle at barycentric coordinates. The geometric normal follows the corner normals where there are any
 /// (files wind their faces carelessly more often than they turn normals inside out), else the winding. Its tangent is only found where the
 /// normal is to be `bent` by a map, else it is 0.
+#[inline(always)]
 pub fn surface_of(corners: [DVec3; 3], data: Corners, meet: &Meet, bent: bool) -> Surface {
     let [a, b, c] = corners;
     let weights = [1.0 - meet.a - meet.b, meet.a, meet.b];
@@ -199,7 +199,7 @@ pub fn surface_of(corners: [DVec3; 3], data: Corners, meet: &Meet, bent: bool) -
         geometric_normal,
         normal,
         tangent: if bent { tangent_of(corners, uvs) } else { DVec3::ZERO },
-        uv: uvs[0] * weights[0] + uvs[1] * weights[1] + uvs[2] * weights[2],
+        uv: (uvs[0] * weights[0] + uvs[1] * weights[1] + uvs[2] * weights[2]).into(),
     }
 }
 

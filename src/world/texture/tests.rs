@@ -24,7 +24,7 @@ fn at(p: DVec3) -> TexturePoint<'static> {
 }
 
 fn at_uv(u: f64, v: f64) -> TexturePoint<'static> {
-    TexturePoint { uv: DVec2::new(u, v), ..TexturePoint::default() }
+    TexturePoint { uv: DVec2::new(u, v).into(), ..TexturePoint::default() }
 }
 
 #[test]

@@ -270,7 +270,8 @@ fn every_solid_has_outward_normals_and_points_on_its_surface() {
                 let seen = origin + toward * hit.t;
                 assert!((seen - hit.point).length() < 1e-12, "shape {i}: {}", (seen - hit.point).length());
                 assert!(hit.normal.dot(hit.tangent()).abs() < 1e-12 && hit.tangent().is_normalized());
-                assert!(hit.uv.min_element() >= -1e-12 && hit.uv.max_element() <= 1.0 + 1e-12, "{}", hit.uv);
+                let uv = hit.uv();
+                assert!(uv.min_element() >= -1e-12 && uv.max_element() <= 1.0 + 1e-12, "{uv}");
             }
         }
     }

@@ -80,7 +80,7 @@ fn a_sliver_keeps_its_coordinates() {
         let world = world(triangle(DVec3::ZERO, e, f));
         let point = e * 0.3 + f * 0.4;
         let hit = world.closest(&ray(point + DVec3::Z, -DVec3::Z)).expect("inside");
-        assert!((hit.uv - DVec2::new(0.3, 0.4)).abs().max_element() <= 1e-15, "{height}: {}", hit.uv);
+        assert!((hit.uv() - DVec2::new(0.3, 0.4)).abs().max_element() <= 1e-15, "{height}: {}", hit.uv());
     }
 }
 
@@ -117,7 +117,8 @@ fn a_hit_lies_on_its_triangle() {
         let aim = a * (1.0 - u - v) + b * u + c * v;
         let origin = random.vector() * 1e4;
         let Some(hit) = world.closest(&ray(origin, (aim - origin).normalize())) else { continue };
-        let weights = [1.0 - hit.uv.x - hit.uv.y, hit.uv.x, hit.uv.y];
+        let uv = hit.uv();
+        let weights = [1.0 - uv.x - uv.y, uv.x, uv.y];
         let size = (a * weights[0]).abs() + (b * weights[1]).abs() + (c * weights[2]).abs();
         let off = height(hit.point, [a, b, c]);
         assert!(off <= 7.0 * f64::EPSILON / 2.0 * size.length(), "{off} {size}");

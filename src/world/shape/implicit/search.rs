@@ -21,9 +21,6 @@ const MOST_EVALUATIONS: u32 = 20_000;
 thread_local! {
     /// Kept between rays so that a search does not allocate.
     static SPARE: Cell<Spare> = const { Cell::new(Spare { along: Vec::new(), at: Vec::new(), forms: Vec::new(), pieces: Vec::new() }) };
-    /// How often functions were bounded or evaluated by this thread, for tests and figures.
-    #[cfg(test)]
-    pub(super) static EVALUATIONS: Cell<u64> = const { Cell::new(0) };
 }
 
 #[derive(Default)]
@@ -90,16 +87,16 @@ impl Near {
     }
 }
 
-/// Calls `found` with the beginning and each meeting in order, until it says false.
+/// Calls `found` with the beginning and each meeting in order, until it says false; gives how often f was bounded or evaluated.
 pub(super) fn each_event(
     shape: &Implicit,
     ray: &LocalRay,
     window: Window,
     mut found: impl FnMut(Event) -> bool,
-) {
+) -> u32 {
     let Some(near) = Near::new(shape, ray, window) else {
         found(Event::Start(false));
-        return;
+        return 0;
     };
     let mut search = Search::new(shape, &near, window.rough, SPARE.take());
     search.run(window.to, &mut |event| match event {
@@ -108,9 +105,8 @@ pub(super) fn each_event(
             !(ahead(meet.t) && meet.t >= window.from) || (meet.t <= window.to && found(event))
         }
     });
-    #[cfg(test)]
-    EVALUATIONS.set(EVALUATIONS.get() + u64::from(search.evaluations));
     SPARE.set(search.spare);
+    search.evaluations
 }
 
 /// A run of pieces in which rounding hides what f does.

@@ -1,13 +1,9 @@
 //! Implicit surfaces against closed forms: every root, double roots, thin shells, singular points, and what the search costs.
 
 use super::*;
-use crate::diag::{SourceId, Span};
 use crate::math::elementary::{cos, sin};
 use crate::math::field::{Binary, FieldBuilder, Register, Rule, Unary};
-use crate::scene::SampleInput;
 use crate::world::shape::Torus;
-
-const SPAN: Span = Span { source: SourceId(0), start: 0, end: 0 };
 
 /// Arithmetic on a tape in the making.
 struct Maker(FieldBuilder);
@@ -62,7 +58,7 @@ fn implicit(half: f64, f: impl FnOnce(&mut Maker, [Register; 3]) -> Register) ->
     let p = [0, 1, 2].map(|i| maker.0.input(i));
     let result = f(&mut maker, p);
     let field = maker.0.finish(&[result]).expect("small");
-    let function = SampledFunction { field, input: SampleInput::Point, span: SPAN, sites: vec![] };
+    let function = SampledFunction::of_point(field);
     Implicit::new(Arc::new(function), DVec3::splat(-half), DVec3::splat(half), None)
 }
 
@@ -318,9 +314,7 @@ fn a_first_hit_costs_less_than_half_of_naive_interval_arithmetic() {
     for _ in 0..400 {
         let origin = random.vector().normalize() * 4.0;
         let ray = ray(origin, random.vector() - origin);
-        search::EVALUATIONS.set(0);
-        shape.meet(&ray, f64::MAX);
-        ours += search::EVALUATIONS.get();
+        ours += u64::from(shape.meet_counting(&ray, f64::MAX).1);
         theirs += naive_evaluations(&naive, &ray);
         rays += 1;
     }
@@ -399,17 +393,14 @@ fn a_gyroid_misses_no_root_and_takes_few_evaluations() {
     let shape = gyroid();
     let mut random = Random(6);
     let (mut roots, mut n) = (0, 0);
-    search::EVALUATIONS.set(0);
     for case in 0..300 {
         let origin = random.vector().normalize() * 5.0;
         let ray = ray(origin, random.vector() * 2.0 - origin);
-        shape.meet(&ray, f64::MAX);
-        n = search::EVALUATIONS.get();
+        n += shape.meet_counting(&ray, f64::MAX).1;
         let Some((enter, leave)) = shape.within.ends(&ray) else { continue };
         // Every change of sign between closely spaced samples is among the crossings.
         let mut all = vec![];
         shape.crossings(&ray, &mut all);
-        search::EVALUATIONS.set(n);
         let turns = all.iter().filter(|m| m.face == ON_SURFACE).map(|m| m.t);
         let turns: Vec<f64> = turns.collect();
         let steps = 20_000;
@@ -426,7 +417,7 @@ fn a_gyroid_misses_no_root_and_takes_few_evaluations() {
         }
         roots += changes.len();
     }
-    println!("{} roots, {:.1} evaluations a ray to the first", roots, n as f64 / 300.0);
+    println!("{} roots, {:.1} evaluations a ray to the first", roots, f64::from(n) / 300.0);
     assert!(roots > 1000 && n < 300 * 16, "{roots} {n}");
 }
 
