@@ -44,7 +44,7 @@ fn head(machine: &Machine) -> String {
          what is missed or made up is counted and never averaged into an error. Times are medians of blocks taken in turn, ± the median \
          deviation; a ratio is the median of ratios taken block by block against the first variant, with its 95 % bootstrap interval. \
          Nanoseconds are of this machine under its load; ratios and counts last longer. Calls are independent of each other, as those of a picture are; where \
-         a second time is given, each call waits for the answer before it (to its parameter 0 times that is added, which is in the time).\n\n\
+         a second time is given, each call waits for the answer before it (of which no bit is taken into its first number, which is in the time). {counted}\n\n\
          In the plots ★ is the default, the line joins what nothing beats in both cost and error, and a hollow mark has wrong answers, however small \
          the error of the rest.\n",
         mode = machine.mode,
@@ -54,7 +54,16 @@ fn head(machine: &Machine) -> String {
         target = machine.target,
         load = machine.load,
         seed = machine.seed,
+        counted = counted(machine),
     )
+}
+
+/// Where the instructions come from, or why there are none.
+fn counted(machine: &Machine) -> String {
+    match &*machine.counter {
+        "" => "Instructions were not counted, which `--count` does where valgrind is installed: their column is empty.".into(),
+        counter => format!("Instructions are those of a call as {counter} counts them, the loop around it among them: the same each time, on any machine."),
+    }
 }
 
 /// What the defaults promise, and where they do not keep it.
@@ -147,8 +156,8 @@ fn table(index: &mut String, case: &str, rows: &[&Row]) {
     let (chain_head, chain_rule) = if chained { (" in a chain, ns |", "---|") } else { ("", "") };
     let _ = write!(
         index,
-        "\n### {}\n\n{n} inputs.\n\n| variant | ns |{chain_head} ratio (95 %) | largest error, {unit} | 99 % | mean | missed | spurious | not finite |{work_head}\n\
-         |---|---|{chain_rule}---|---|---|---|---|---|---|{work_rule}\n",
+        "\n### {}\n\n{n} inputs.\n\n| variant | ns |{chain_head} instructions | ratio (95 %) | largest error, {unit} | 99 % | mean | missed | spurious | not finite |{work_head}\n\
+         |---|---|{chain_rule}---|---|---|---|---|---|---|---|{work_rule}\n",
         capital(case)
     );
     for row in rows {
@@ -161,9 +170,10 @@ fn table(index: &mut String, case: &str, rows: &[&Row]) {
         };
         let _ = writeln!(
             index,
-            "| {}{star} | {} |{chain} {} | {} | {} | {} |{work}",
+            "| {}{star} | {} |{chain} {} | {} | {} | {} | {} |{work}",
             row.variant,
             pair(row.ns_median, row.ns_mad),
+            row.instructions.map_or("–".into(), short),
             ratio(row),
             [row.error_max, row.error_p99, row.error_mean].map(short).join(" | "),
             [row.missed, row.spurious].map(|n| n.to_string()).join(" | "),
@@ -326,9 +336,21 @@ mod tests {
     fn chains_have_a_column_where_one_was_timed() {
         let chained = Row { ns_chain: Some(7.0), ..row("slow", 2.0, 2.0, true) };
         let text = &render(&Machine::default(), &[row("fast", 1.0, 1.0, false), chained])[0].text;
-        assert!(text.contains("| ns | in a chain, ns | ratio"), "{text}");
-        assert!(text.contains("| slow ★ | 2.00 ± 0 | 7.00 | 2.00"), "{text}");
-        assert!(text.contains("| fast | 1.00 ± 0 | – | 1.00"), "{text}");
+        assert!(text.contains("| ns | in a chain, ns | instructions | ratio"), "{text}");
+        assert!(text.contains("| slow ★ | 2.00 ± 0 | 7.00 | – | 2.00"), "{text}");
+        assert!(text.contains("| fast | 1.00 ± 0 | – | – | 1.00"), "{text}");
+    }
+
+    #[test]
+    fn the_page_says_who_counted_instructions_or_that_nobody_did() {
+        let text = |machine: &Machine, instructions| {
+            let one = Row { instructions, ..row("fast", 1.0, 1.0, false) };
+            render(machine, &[one])[0].text.clone()
+        };
+        assert!(text(&Machine::default(), None).contains("their column is empty"));
+        let machine = Machine { counter: "valgrind-3".into(), ..Machine::default() };
+        let counted = text(&machine, Some(41.5));
+        assert!(counted.contains("as valgrind-3 counts them") && counted.contains("| 41.5 |"), "{counted}");
     }
 
     #[test]

@@ -53,6 +53,9 @@ pub struct Row {
     /// Median nanoseconds of a call that waits for the answer of the one before it, where that was timed.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub ns_chain: Option<f64>,
+    /// Instructions per call, where a profiler counted them.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub instructions: Option<f64>,
     /// Time over that of the component's first variant, pair by pair: median and 95 % interval.
     pub ratio: f64,
     /// Lower and upper end of the ratio's interval (bootstrap).
@@ -106,4 +109,6 @@ pub struct Machine {
     pub load: f64,
     /// "quick" or "full".
     pub mode: String,
+    /// What counted instructions; empty where nothing did.
+    pub counter: String,
 }

@@ -2,7 +2,7 @@
 //!
 //! An input is a row of numbers, so that the one that caused the largest error can be written down exactly and given back.
 
-use super::measure::{Errors, Timed, interleaved};
+use super::measure::{Errors, Timed, counted, interleaved};
 use super::row::Row;
 use crate::math::hex::hex_list;
 use std::fmt::Debug;
@@ -19,6 +19,8 @@ pub struct Plan {
     pub block_ns: f64,
     /// One variant on one input, instead of everything.
     pub only: Option<Only>,
+    /// So many calls of each variant for a profiler to count, and nothing judged or timed; 0 for none.
+    pub counted: usize,
 }
 
 /// What to reproduce.
@@ -37,17 +39,22 @@ pub struct Only {
 impl Plan {
     /// Errors alone, on few inputs: for tests.
     pub fn errors() -> Plan {
-        Plan { inputs: 500, blocks: 0, block_ns: 0.0, only: None }
+        Plan { inputs: 500, blocks: 0, block_ns: 0.0, only: None, counted: 0 }
     }
 
     /// Within a minute.
     pub fn quick() -> Plan {
-        Plan { inputs: 2000, blocks: 30, block_ns: 5e5, only: None }
+        Plan { inputs: 2000, blocks: 30, block_ns: 5e5, only: None, counted: 0 }
     }
 
     /// For the record: more inputs and blocks, none longer, so that most fit a time slice of a busy machine.
     pub fn full() -> Plan {
-        Plan { inputs: 20_000, blocks: 150, block_ns: 5e5, only: None }
+        Plan { inputs: 20_000, blocks: 150, block_ns: 5e5, only: None, counted: 0 }
+    }
+
+    /// Calls to be counted by a profiler, each variant's in its turn in [`counted`].
+    pub fn counts() -> Plan {
+        Plan { counted: 256, ..Plan::errors() }
     }
 
     /// One variant on one input.
@@ -120,6 +127,51 @@ pub struct Subject {
 /// Inputs between two looks at the clock: few enough that a slow variant ends its block in time. Runs go round through all inputs.
 const CHUNK: usize = 64;
 
+/// Makes a number wait for another.
+#[derive(Clone, Copy, Debug)]
+pub struct Link {
+    /// None, but only here is that known.
+    bits: u64,
+}
+
+impl Link {
+    /// A link.
+    pub fn new() -> Link {
+        Link { bits: black_box(0) }
+    }
+
+    /// `x`, once `before` is known.
+    #[inline(always)]
+    pub fn after(self, before: f64, x: f64) -> f64 {
+        f64::from_bits(x.to_bits() | (before.to_bits() & self.bits))
+    }
+}
+
+impl Default for Link {
+    fn default() -> Link {
+        Link::new()
+    }
+}
+
+/// Inputs by the chunk, round and round. What is left over at the end, less than a chunk, is left out.
+struct Chunks<const N: usize> {
+    inputs: Vec<[f64; N]>,
+    calls: usize,
+    next: usize,
+}
+
+impl<const N: usize> Chunks<N> {
+    fn of(inputs: &[[f64; N]]) -> Self {
+        Chunks { inputs: inputs.to_vec(), calls: inputs.len().clamp(1, CHUNK), next: 0 }
+    }
+
+    fn next(&mut self) -> &[[f64; N]] {
+        let (start, end) = (self.next, (self.next + self.calls).min(self.inputs.len()));
+        self.next = if end + self.calls <= self.inputs.len() { end } else { 0 };
+        &self.inputs[start..end]
+    }
+}
+
 type Judge<'a, const N: usize, O> = Box<dyn Fn(&[f64; N], &O) -> Verdict + 'a>;
 
 /// Variants on one case set of inputs of N numbers, with answers O.
@@ -132,6 +184,8 @@ pub struct Trial<'a, const N: usize, O> {
     timed: Vec<Timed<'a>>,
     /// Runs whose calls wait for one another, each with its row.
     chains: Vec<(usize, Timed<'a>)>,
+    /// What of an answer the next call of a chain waits for.
+    waits_for: Option<fn(&O) -> f64>,
 }
 
 impl<'a, const N: usize, O: Debug + 'a> Trial<'a, N, O> {
@@ -150,22 +204,37 @@ impl<'a, const N: usize, O: Debug + 'a> Trial<'a, N, O> {
             Some(_) => Vec::new(),
         };
         let judge = Box::new(judge);
-        Trial { plan, subject, inputs, judge, rows: Vec::new(), timed: Vec::new(), chains: Vec::new() }
+        let (rows, timed, chains) = (Vec::new(), Vec::new(), Vec::new());
+        Trial { plan, subject, inputs, judge, rows, timed, chains, waits_for: None }
+    }
+
+    /// Times every variant that is [`run`](Trial::run) once more with calls that wait for this number of the answer before: no bit of it is
+    /// taken into the first number of the next input, but the processor cannot know.
+    #[must_use]
+    pub fn in_chains(self, waits_for: fn(&O) -> f64) -> Self {
+        Trial { waits_for: Some(waits_for), ..self }
     }
 
     /// Judges a variant on every input, and has it timed on them later.
     pub fn run(&mut self, label: Label, solve: impl Fn(&[f64; N]) -> O + Clone + 'a) {
-        let (inputs, timed) = (self.inputs.clone(), solve.clone());
-        let calls = inputs.len().clamp(1, CHUNK);
-        let mut next = 0;
+        let mut chunks = Chunks::of(&self.inputs);
+        let (calls, timed, linked) = (chunks.calls, solve.clone(), solve.clone());
         let run = move || {
-            let end = (next + calls).min(inputs.len());
-            inputs[next..end].iter().for_each(|input| drop(black_box(timed(black_box(input)))));
-            // What is left over at the end, less than a chunk, is not timed.
-            next = if end + calls <= inputs.len() { end } else { 0 };
+            chunks.next().iter().for_each(|input| drop(black_box(timed(black_box(input)))));
             0.0
         };
         self.run_timed(label, calls, solve, run);
+        if let Some(waits_for) = self.waits_for {
+            let mut chunks = Chunks::of(&self.inputs);
+            let link = Link::new();
+            self.chain(label, calls, move || {
+                chunks.next().iter().fold(0.0, |before, input| {
+                    let mut input = *input;
+                    input[0] = link.after(before, input[0]);
+                    waits_for(&black_box(linked(&input)))
+                })
+            });
+        }
     }
 
     /// The same, timed by `work`, which makes `calls` calls: for variants that take many inputs at once.
@@ -179,7 +248,9 @@ impl<'a, const N: usize, O: Debug + 'a> Trial<'a, N, O> {
         if self.plan.only.as_ref().is_some_and(|only| only.variant != label.name) || self.inputs.is_empty() {
             return;
         }
-        self.rows.push(self.judged(label, solve));
+        let is_judged = self.plan.counted == 0;
+        let bare = || Row::of(&self.subject, label.name, label.default, label.note);
+        self.rows.push(if is_judged { self.judged(label, solve) } else { bare() });
         self.timed.push(Timed { name: label.name, calls, run: Box::new(work) });
     }
 
@@ -217,8 +288,11 @@ impl<'a, const N: usize, O: Debug + 'a> Trial<'a, N, O> {
         row
     }
 
-    /// Times the variants in turn and gives their rows.
+    /// Times the variants in turn, or has their calls counted, and gives their rows.
     pub fn finish(mut self) -> Vec<Row> {
+        if self.plan.counted > 0 {
+            return self.count();
+        }
         if self.plan.blocks > 0 {
             let timings = interleaved(&mut self.timed, self.plan.blocks, self.plan.block_ns);
             for (row, timing) in self.rows.iter_mut().zip(timings) {
@@ -229,6 +303,17 @@ impl<'a, const N: usize, O: Debug + 'a> Trial<'a, N, O> {
             }
         }
         self.time_chains();
+        self.rows
+    }
+
+    /// Rows that say of how many calls each variant's were. What is made at the first call is made before.
+    fn count(mut self) -> Vec<Row> {
+        for (row, timed) in self.rows.iter_mut().zip(&mut self.timed) {
+            let repeats = self.plan.counted.div_ceil(timed.calls.max(1));
+            (timed.run)();
+            counted(&mut *timed.run, repeats);
+            row.n = repeats * timed.calls;
+        }
         self.rows
     }
 
@@ -270,6 +355,24 @@ mod tests {
         let again = rows(&Plan::only(only));
         assert_eq!((again.len(), again[0].n, again[0].error_max), (1, 1, all[0].error_max));
         assert!(!again[0].answer.is_empty());
+    }
+
+    #[test]
+    fn calls_to_be_counted_are_made_and_not_judged() {
+        let all = rows(&Plan::counts());
+        assert_eq!(all.iter().map(|row| row.n).collect::<Vec<_>>(), [256, 256]);
+        assert!(all.iter().all(|row| row.error_max == 0.0 && row.ns_median == 0.0));
+    }
+
+    #[test]
+    fn every_variant_is_timed_in_a_chain_where_a_trial_says_what_it_waits_for() {
+        let plan = Plan { blocks: 3, block_ns: 1e3, ..Plan::errors() };
+        let inputs = (0..100).map(|i| [f64::from(i) / 100.0]).collect();
+        let judge = |[x]: &[f64; 1], root: &f64| Verdict::error((root * root - x).abs());
+        let mut trial = Trial::new(&plan, SQUARE_ROOT, inputs, judge).in_chains(|root| *root);
+        trial.run(variant("half"), |[x]| x / 2.0);
+        trial.run(default("exact"), |[x]| x.sqrt());
+        assert!(trial.finish().iter().all(|row| row.ns_chain.is_some_and(|ns| ns > 0.0)));
     }
 
     #[test]

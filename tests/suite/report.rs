@@ -227,3 +227,13 @@ fn trees_are_measured_and_their_report_comes_again_from_results() {
     let missing = folder.ogee("bench accelerators nothing.obj").expect(3);
     assert!(missing.stderr.contains("nothing.obj"), "{}", missing.stderr);
 }
+
+#[test]
+fn the_renderer_asks_an_implicit_function_at_most_half_as_often_as_halving_by_intervals() {
+    // A double zero takes as many: whether it is one must be decided too.
+    for case in ["sphere", "thin shell", "tanglecube", "torus"] {
+        let work = |variant| row("implicit surface", case, variant).work;
+        let (ours, naive) = (work("cells, then forms"), work("intervals halved, x·x"));
+        assert!(ours <= 0.5 * naive, "{case}: {ours} of {naive}");
+    }
+}

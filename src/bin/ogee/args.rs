@@ -79,6 +79,9 @@ pub enum Bench {
     Report(BenchReport),
     /// Ask one variant for one input that a report names
     Repro(Repro),
+    /// Make the calls of a component that `kernels --count` counts
+    #[command(hide = true)]
+    Count(BenchCount),
 }
 
 /// `ogee bench kernels`.
@@ -96,6 +99,16 @@ pub struct Kernels {
     /// These components alone: curves,roots
     #[arg(long, value_name = "NAME,…", value_delimiter = ',')]
     pub only: Vec<String>,
+    /// Count the instructions of a call too, in some minutes more, where valgrind is installed
+    #[arg(long)]
+    pub count: bool,
+}
+
+/// `ogee bench count`.
+#[derive(Args)]
+pub struct BenchCount {
+    /// The component, as `kernels --only` names it
+    pub component: String,
 }
 
 /// `ogee bench report`.

@@ -27,7 +27,7 @@ fn trial(plan: &Plan, case: &'static str, eta: f64) -> Vec<Row> {
     let inputs = (0..plan.inputs).map(|_| [random.unit(), eta]).collect();
     let subject = Subject { component: "fresnel", case, unit: "absolute", work: "", bar: Some(1e-14) };
     let judge = |i: &Input, share: &f64| Verdict::error((share - truth(i)).abs());
-    let mut trial = Trial::new(plan, subject, inputs, judge);
+    let mut trial = Trial::new(plan, subject, inputs, judge).in_chains(|share| *share);
     trial.run(variant("schlick, one side"), |i| one_sided(i[0], i[1]));
     trial.run(variant("schlick, both sides"), |i| dielectric_schlick(i[0], i[1]));
     trial.run(default("exact").note("schlick is off by up to 0.2"), |i| dielectric(i[0], i[1]));

@@ -42,7 +42,8 @@ fn trial(
     let subject = Subject { component: "ray and patch", case, unit, work: "", bar: Some(bar) };
     let scale = if case == "grazing" { |i: &Input| i[2].sqrt() } else { |_: &Input| 1.0 };
     let mut trial =
-        Trial::new(plan, subject, inputs, move |i: &Input, t: &Option<f64>| judge(*t, i[6], scale(i)));
+        Trial::new(plan, subject, inputs, move |i: &Input, t: &Option<f64>| judge(*t, i[6], scale(i)))
+            .in_chains(|t| t.unwrap_or(0.0));
     for (name, n) in [("16 × 16 triangles", 16), ("64 × 64 triangles", 64)] {
         let diced = std::rc::Rc::new(naive::Diced::new(&piece, n));
         trial.run(variant(name), move |i| diced.meet(&line(i)));

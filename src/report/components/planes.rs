@@ -25,7 +25,8 @@ fn trial(plan: &Plan, case: &'static str, bar: f64, draw: fn(&mut Random) -> Inp
     let mut random = Random::new(SEED);
     let inputs: Vec<Input> = (0..plan.inputs).map(|_| draw(&mut random)).collect();
     let subject = Subject { component: "ray and plane", case, unit: "ulp of t", work: "", bar: Some(bar) };
-    let mut trial = Trial::new(plan, subject, inputs, |i: &Input, t: &Option<f64>| judge(i, *t));
+    let mut trial = Trial::new(plan, subject, inputs, |i: &Input, t: &Option<f64>| judge(i, *t))
+        .in_chains(|t| t.unwrap_or(0.0));
     trial.run(variant("plain"), |i| naive::plane(&line(i), normal(i), i[9]));
     let why = "plain arithmetic loses half the digits of grazing rays";
     trial.run(default("certain sign, then precise").note(why), |i| {

@@ -63,7 +63,8 @@ fn trial(plan: &Plan, degree: usize, family: &str, case: &'static str) -> Vec<Ro
     let judge = move |input: &Input, found: &Found| {
         if touching { backward(input, found) } else { forward(input, found) }
     };
-    let mut trial = Trial::new(plan, subject, goldens(family), judge);
+    let mut trial = Trial::new(plan, subject, goldens(family), judge)
+        .in_chains(|found| found.first().copied().unwrap_or(0.0));
     for (label, solve) in formulas {
         trial.run(*label, move |i| solve(&i[..=degree]));
     }

@@ -9,7 +9,7 @@ use crate::math::random::Random;
 use crate::math::{Affine, Point};
 use crate::report::naive::skins::{Dual, by_duals, by_matrices, normal_by_duals, normal_by_matrices};
 use crate::report::row::Row;
-use crate::report::trial::{Label, Plan, Subject, Trial, Verdict, default, variant};
+use crate::report::trial::{Label, Link, Plan, Subject, Trial, Verdict, default, variant};
 use glam::DVec3;
 use std::hint::black_box;
 use std::sync::Arc;
@@ -226,11 +226,20 @@ fn run<'a, M: Clone + 'a>(
 ) {
     let Some(bones) = cases.first().map(&prepare) else { return };
     let weighted: Vec<(Case, [f64; 4])> = cases.iter().map(|case| (*case, case.weights())).collect();
-    let timed = blend.clone();
+    let (timed, linked, chain, link) = (blend.clone(), blend.clone(), weighted.clone(), Link::new());
+    let same = bones.clone();
+    let in_turn = move || {
+        chain.iter().fold(0.0, |before, (case, w)| {
+            let mut case = *case;
+            case.subject.x = link.after(before, case.subject.x);
+            linked(black_box(&same), w, &case).x
+        })
+    };
     let work = move || weighted.iter().map(|(case, w)| timed(black_box(&bones), w, case).x).sum();
     let solve = |input: &Input| {
         let case = Case::of(input);
         blend(&prepare(&case), &case.weights(), &case)
     };
     trial.run_timed(label, cases.len(), solve, work);
+    trial.chain(label, cases.len(), in_turn);
 }

@@ -33,7 +33,7 @@ fn trial(plan: &Plan, case: &'static str, bar: f64, draw: fn(&mut Random) -> Inp
     let mut random = Random::new(SEED);
     let inputs: Vec<Input> = (0..plan.inputs).map(|_| draw(&mut random)).collect();
     let subject = Subject { component: "ray and sphere", case, unit: "ulp of t", work: "", bar: Some(bar) };
-    let mut trial = Trial::new(plan, subject, inputs, judge);
+    let mut trial = Trial::new(plan, subject, inputs, judge).in_chains(|t| t.unwrap_or(0.0));
     trial.run(variant("b²−4ac"), |i| naive::sphere_quadratic(&line(i), i[6]));
     trial.run(variant("foot and chord"), |i| naive::sphere_geometric(&line(i), i[6]));
     trial.run(variant("haines"), |i| naive::sphere_haines(&line(i), i[6]));

@@ -25,7 +25,8 @@ fn trial(plan: &Plan, case: &'static str, from: f64, to: f64) -> Vec<Row> {
     let mut random = Random::new(SEED);
     let inputs = (0..plan.inputs).map(|_| draw(&mut random, from, to)).collect();
     let subject = Subject { component: "ray and torus", case, unit: "ulp of t", work: "", bar: Some(16.0) };
-    let mut trial = Trial::new(plan, subject, inputs, |i: &Input, t: &Option<f64>| compare(*t, Some(i[8])));
+    let mut trial = Trial::new(plan, subject, inputs, |i: &Input, t: &Option<f64>| compare(*t, Some(i[8])))
+        .in_chains(|t| t.unwrap_or(0.0));
     trial.run(variant("ferrari at the eye"), |i| naive::torus_ferrari(&line(i), i[6], i[7]));
     trial.run(variant("intervals at the eye"), |i| naive::torus_origin(&line(i), i[6], i[7]));
     trial.run(default("intervals at the nearest point").note("it alone sees a torus from afar"), |i| {

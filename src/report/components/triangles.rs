@@ -43,7 +43,8 @@ fn single(plan: &Plan, case: &'static str, bar: f64, draw: Draw) -> Vec<Row> {
     let inputs: Vec<Alone> = (0..plan.inputs).map(|_| draw(&mut random)).collect();
     let subject = Subject { component: "ray and triangle", case, unit: "ulp of t", work: "", bar: Some(bar) };
     let mut trial =
-        Trial::new(plan, subject, inputs, |i: &Alone, t: &Option<f64>| compare(*t, Some(truth(i))));
+        Trial::new(plan, subject, inputs, |i: &Alone, t: &Option<f64>| compare(*t, Some(truth(i))))
+            .in_chains(|t| t.unwrap_or(0.0));
     for (name, test) in VARIANTS {
         trial.run(variant(name), move |i| test(&line(i), corners(i)));
     }

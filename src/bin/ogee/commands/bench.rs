@@ -1,6 +1,7 @@
 //! `ogee bench`: kernels, tracers and trees measured, and the reports of it.
 
 mod accelerators;
+mod counts;
 mod tracers;
 
 use crate::args::{Bench, BenchReport, Kernels, Repro};
@@ -31,6 +32,7 @@ pub fn run(args: &Bench) -> Ended {
         Bench::Accelerators(args) => accelerators::run(args),
         Bench::Report(args) => report(args),
         Bench::Repro(args) => repro(args),
+        Bench::Count(args) => counts::make_calls(&args.component),
     }
 }
 
@@ -43,8 +45,16 @@ fn kernels(args: &Kernels) -> Ended {
     }
     make_results(&args.out)?;
     let (mode, plan) = if args.full { ("full", Plan::full()) } else { ("quick", Plan::quick()) };
-    let machine = machine(mode);
-    let rows = measure(&plan, &args.only, |name| tell(format!("measuring {name}")));
+    let mut machine = machine(mode);
+    let mut rows = measure(&plan, &args.only, |name| tell(format!("measuring {name}")));
+    match counts::counter() {
+        Some(counter) if args.count => {
+            machine.counter = counter;
+            counts::fill(&mut rows, &args.only)?;
+        }
+        None if args.count => tell("valgrind is not installed: instructions are not counted"),
+        _ => {}
+    }
     write(&args.out, &store::write(&machine, &rows, |row| &row.component))?;
     write(&args.out, &render(&machine, &rows))?;
     tell(format!("wrote {}", args.out.join("index.md").display()));
@@ -161,5 +171,6 @@ fn machine(mode: &str) -> Machine {
         seed: SEED,
         load: load.unwrap_or(0.0),
         mode: mode.into(),
+        counter: String::new(),
     }
 }
