@@ -3,16 +3,17 @@
 use crate::geometry::mesh::Mesh;
 use crate::math::Aabb;
 use crate::scene::Accelerator;
+use crate::world::bvh::{self, Costs};
+use crate::world::kdtree;
 use crate::world::shape::LocalRay;
 use crate::world::shape::triangle::{Sheared, cut::cut};
 use crate::world::tree::Tree;
-use crate::world::{bvh, kdtree};
 use glam::DVec3;
 
 /// What makes the tree.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Builder {
-    /// The hierarchy of boxes that scenes use.
+    /// The hierarchy of boxes that scenes use, its triangles tested one by one as of the other trees and not in packs.
     Bvh,
     /// The same, halved by number.
     BvhMedian,
@@ -79,7 +80,7 @@ impl<'m> Subject<'m> {
         let tree = match builder {
             Builder::Bvh => Tree::Bvh(bvh::Tree::build(n, bounds)),
             Builder::BvhMedian => Tree::Bvh(bvh::Tree::build_median(n, bounds)),
-            Builder::KdTree => Tree::build_clipped(Accelerator::KdTree, n, bounds, clip),
+            Builder::KdTree => Tree::build_clipped(Accelerator::KdTree, &Costs::SINGLE, n, bounds, clip),
             Builder::KdTreeOfBoxes => Tree::KdTree(kdtree::Tree::build(n, bounds)),
             Builder::List => Tree::Bvh(bvh::Tree::list(n, bounds)),
         };
@@ -160,7 +161,7 @@ impl<'a, 'm> Asked<'a, 'm> {
         let Subject { mesh, triangles, tree } = self.subject;
         for place in range {
             let corners = triangles[place].map(|p| mesh.positions[p as usize]);
-            let Some(meet) = self.sheared.meet(corners, self.limit) else { continue };
+            let Some(meet) = self.sheared.meet(corners.each_ref(), self.limit) else { continue };
             let triangle = tree.order()[place];
             if self.best.is_none_or(|(t, first)| meet.t < t || (meet.t == t && triangle < first)) {
                 self.best = Some((meet.t, triangle));

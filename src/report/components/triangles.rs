@@ -30,7 +30,7 @@ pub fn rows(plan: &Plan) -> Vec<Row> {
 
 fn watertight(line: &Line, corners: [DVec3; 3]) -> Option<f64> {
     let (ray, scale) = LocalRay::new(line.origin, line.direction)?;
-    Sheared::new(&ray).meet(corners, f64::INFINITY).map(|meet| meet.t / scale)
+    Sheared::new(&ray).meet(corners.each_ref(), f64::INFINITY).map(|meet| meet.t / scale)
 }
 
 type Test = fn(&Line, [DVec3; 3]) -> Option<f64>;
@@ -152,7 +152,7 @@ fn ball(plan: &Plan, case: &'static str, away: f64) -> Vec<Row> {
     trial.run(default("watertight").note("the others leave holes between triangles"), move |i| {
         let line = line(i);
         let ray = Sheared::new(&LocalRay::new(line.origin, line.direction)?.0);
-        triangles.iter().filter_map(|t| ray.meet(*t, f64::INFINITY).map(|m| m.t)).reduce(f64::min)
+        triangles.iter().filter_map(|t| ray.meet(t.each_ref(), f64::INFINITY).map(|m| m.t)).reduce(f64::min)
     });
     trial.finish()
 }

@@ -1,13 +1,15 @@
 //! The one traversal: nearest boxes first, for closest hits and for any hit.
 
 mod counting;
+mod entry;
 mod wide;
 
-use super::frame::{round_down, round_up};
+pub use entry::Entry;
+use entry::Narrow;
+
 use super::{Node, Tree, WIDTH};
 use crate::math::Aabb;
 use crate::math::error::gamma;
-use crate::math::exact::{exponent, power_of_two};
 use glam::DVec3;
 use std::ops::Range;
 
@@ -60,87 +62,31 @@ fn clip_by(bounds: &Aabb, origin: DVec3, inverse: DVec3, t_max: f64) -> Option<(
     (near <= far).then_some((near, far))
 }
 
-/// A ray in a tree's frame, narrowed so that it meets more boxes rather than fewer.
-struct Narrow {
-    /// Where the planes that the ray enters through are measured from, and those it leaves through.
-    near_origin: [f32; 3],
-    far_origin: [f32; 3],
-    /// Of the direction; widened for the far planes.
-    near_inverse: [f32; 3],
-    far_inverse: [f32; 3],
-    /// Rows of [`Node`].
-    near_row: [usize; 3],
-    far_row: [usize; 3],
-    /// s = (t − start)·per_t.
-    start: f64,
-    per_t: f64,
-}
+/// Which children of a node a ray meets, as bits, and by child the bits of where it enters, of which the last three are the
+/// child's slot: numbers that order children, near ones first.
+type Met = (u32, [u32; WIDTH]);
 
-impl Narrow {
-    /// `start` is where the ray enters the tree's bounds, `inverse` 1 over each coordinate of its direction.
-    fn new(tree: &Tree, origin: DVec3, direction: DVec3, inverse: DVec3, start: f64) -> Narrow {
-        let unit = power_of_two(exponent(direction.abs().max_element()));
-        let from_center = origin - tree.frame.center;
-        let entry = (from_center + direction * start) * tree.frame.scale;
-        let travelled = from_center.abs().max_element() + direction.abs().max_element() * start;
-        let margin = MARGIN * (travelled * tree.frame.scale + FRAME_SIZE);
-        let mut ray = Narrow {
-            near_origin: [0.0; 3],
-            far_origin: [0.0; 3],
-            near_inverse: [0.0; 3],
-            far_inverse: [0.0; 3],
-            near_row: [0, 1, 2],
-            far_row: [3, 4, 5],
-            start,
-            per_t: unit * tree.frame.scale,
-        };
-        for a in 0..3 {
-            let inverse = inverse[a] * unit;
-            let (below, above) = (round_down(entry[a] - margin), round_up(entry[a] + margin));
-            let negative = inverse.is_sign_negative();
-            (ray.near_origin[a], ray.far_origin[a]) = if negative { (below, above) } else { (above, below) };
-            if negative {
-                (ray.near_row[a], ray.far_row[a]) = (a + 3, a);
-            }
-            ray.near_inverse[a] = inverse as f32;
-            ray.far_inverse[a] = inverse as f32 * WIDEN;
-        }
-        ray
-    }
+/// The bits of a distance that name a slot.
+const SLOT: u32 = WIDTH as u32 - 1;
 
-    /// A float at or beyond the distance t in the tree's frame.
-    #[inline(always)]
-    fn limit(&self, t: f64) -> f32 {
-        round_up(((t - self.start) * SLACK + t * MARGIN) * self.per_t * f64::from(WIDEN))
-    }
-}
-
-/// Which children of a node a ray meets, as bits, and where it enters each.
-type Met = (u32, [f32; WIDTH]);
-
-/// A child that is still to be visited.
-#[derive(Clone, Copy, Default)]
-struct Entry {
-    near: f32,
-    child: u32,
-    count: u32,
-}
+/// A child that is still to be visited: its distance and slot, and its node.
+type Pending = u64;
 
 /// A stack that spills.
 struct Stack {
-    entries: [Entry; STACK],
+    entries: [Pending; STACK],
     len: usize,
-    spilled: Vec<Entry>,
+    spilled: Vec<Pending>,
 }
 
 impl Stack {
     #[inline(always)]
     fn new() -> Stack {
-        Stack { entries: [Entry::default(); STACK], len: 0, spilled: Vec::new() }
+        Stack { entries: [0; STACK], len: 0, spilled: Vec::new() }
     }
 
     #[inline(always)]
-    fn push(&mut self, entry: Entry) {
+    fn push(&mut self, entry: Pending) {
         if self.len < STACK {
             self.entries[self.len] = entry;
             self.len += 1;
@@ -150,7 +96,7 @@ impl Stack {
     }
 
     #[inline(always)]
-    fn pop(&mut self) -> Option<Entry> {
+    fn pop(&mut self) -> Option<Pending> {
         if self.len == STACK
             && let Some(entry) = self.spilled.pop()
         {
@@ -162,10 +108,10 @@ impl Stack {
 
     /// The last entry that begins before the limit.
     #[inline(always)]
-    fn next(&mut self, limit: f32) -> Option<Entry> {
+    fn next(&mut self, limit: f32) -> Option<Pending> {
         loop {
             let entry = self.pop()?;
-            if entry.near <= limit {
+            if f32::from_bits((entry >> 32) as u32 & !SLOT) <= limit {
                 return Some(entry);
             }
         }
@@ -173,30 +119,33 @@ impl Stack {
 
     /// Pushes the children that the ray meets but the nearest, farther ones first; gives the nearest.
     #[inline(always)]
-    fn enter(&mut self, node: &Node, (mut mask, near): Met) -> Option<Entry> {
+    fn enter(&mut self, node: u32, (mut mask, keys): Met) -> Option<Pending> {
         if mask == 0 {
             return None;
         }
-        let entry = |i: usize| Entry { near: near[i], child: node.child(i), count: node.count(i) };
-        let mut nearest = entry(mask.trailing_zeros() as usize & (WIDTH - 1));
-        mask &= mask - 1;
-        if mask == 0 {
+        let mut take = || {
+            let key = keys[(mask.trailing_zeros() & SLOT) as usize];
+            mask &= mask - 1;
+            (u64::from(key) << 32 | u64::from(node), mask == 0)
+        };
+        let (first, is_last) = take();
+        if is_last {
+            return Some(first);
+        }
+        let (second, is_last) = take();
+        let (mut nearest, other) = (first.min(second), first.max(second));
+        let bottom = self.len;
+        self.push(other);
+        if is_last {
             return Some(nearest);
         }
-        let bottom = self.len;
         loop {
-            let mut other = entry(mask.trailing_zeros() as usize & (WIDTH - 1));
-            mask &= mask - 1;
-            if other.near < nearest.near {
-                std::mem::swap(&mut other, &mut nearest);
-            }
-            self.push(other);
-            if mask == 0 {
+            let (next, is_last) = take();
+            self.push(nearest.max(next));
+            nearest = nearest.min(next);
+            if is_last {
                 break;
             }
-        }
-        if self.len == bottom + 1 {
-            return Some(nearest);
         }
         // Where some spilled, their order is lost, which costs time only.
         sort_far_first(&mut self.entries[bottom..self.len]);
@@ -215,17 +164,47 @@ impl Tree {
         mut t_max: f64,
         mut leaf: impl FnMut(Range<usize>, f64) -> f64,
     ) {
-        if self.bounded < self.order.len() {
-            t_max = leaf(self.bounded..self.order.len(), t_max);
+        let loose = self.loose();
+        if !loose.is_empty() {
+            t_max = leaf(loose, t_max);
         }
-        if self.nodes.is_empty() || t_max < 0.0 {
-            return;
+        self.visit(origin, direction, t_max, &mut Leaves(leaf));
+    }
+
+    /// What is offered to every ray: items that hang under no node.
+    pub fn loose(&self) -> Range<usize> {
+        self.bounded..self.order.len()
+    }
+
+    /// As [`Tree::traverse`], for what hangs under nodes.
+    #[inline(always)]
+    pub fn visit(&self, origin: DVec3, direction: DVec3, t_max: f64, visitor: &mut impl Visitor) {
+        if !self.nodes.is_empty() && t_max >= 0.0 {
+            wide::traverse(self, origin, direction, t_max, visitor);
         }
-        let inverse = direction.recip();
-        if let Some((start, _)) = clip_by(&self.bounds, origin, inverse, t_max) {
-            let ray = Narrow::new(self, origin, direction, inverse, start);
-            wide::walk(&self.nodes, &ray, t_max, leaf);
-        }
+    }
+}
+
+/// What a ray does in a tree. Its functions become part of the traversal, which is compiled for what the processor has.
+pub trait Visitor {
+    /// Where the ray enters; before anything else.
+    fn enter(&mut self, entry: &Entry);
+
+    /// A range of [`Tree::order`] that the ray may meet before `t_max`; `limit` is a float at or beyond that, as a distance in the frame.
+    /// Gives the distance beyond which nothing matters any more; a negative one ends the traversal.
+    fn leaf(&mut self, range: Range<usize>, t_max: f64, limit: f32) -> f64;
+}
+
+/// A visitor that leaves are all to.
+struct Leaves<F>(F);
+
+impl<F: FnMut(Range<usize>, f64) -> f64> Visitor for Leaves<F> {
+    #[inline(always)]
+    fn enter(&mut self, _: &Entry) {}
+
+    #[inline(always)]
+    fn leaf(&mut self, range: Range<usize>, t_max: f64, _: f32) -> f64 {
+        (self.0)(range, t_max)
     }
 }
 
@@ -233,49 +212,48 @@ impl Tree {
 #[inline(always)]
 fn walk(
     nodes: &[Node],
-    ray: &Narrow,
+    entry: &Entry,
     mut t_max: f64,
     meets: impl Fn(&Node, f32) -> Met,
-    mut leaf: impl FnMut(Range<usize>, f64) -> f64,
+    visitor: &mut impl Visitor,
 ) {
-    let mut limit = ray.limit(t_max);
+    let mut limit = entry.limit(t_max);
     let mut stack = Stack::new();
-    let mut current = Entry::default();
-    let mut is_first = true;
+    let mut at = 0;
     loop {
-        // A ray of which a number is infinite or NaN meets absent children too, which name the first node.
-        let is_absent = current.count == 0 && current.child == 0 && !is_first;
-        is_first = false;
-        let nearest = if is_absent {
-            None
-        } else if current.count == 0 {
-            let node = &nodes[current.child as usize];
-            stack.enter(node, meets(node, limit))
-        } else {
-            let first = current.child as usize;
-            let found = leaf(first..first + current.count as usize, t_max);
-            if found < 0.0 {
-                return;
+        let mut next = stack.enter(at, meets(&nodes[at as usize], limit)).or_else(|| stack.next(limit));
+        loop {
+            let Some(pending) = next else { return };
+            let (node, slot) = (&nodes[pending as u32 as usize], (pending >> 32) as u32 & SLOT);
+            let (child, count) = (node.child(slot as usize), node.count(slot as usize));
+            if count == 0 {
+                // A ray of which a number is infinite or NaN meets absent children too, which name the first node.
+                if child != 0 {
+                    at = child;
+                    break;
+                }
+            } else {
+                let first = child as usize;
+                let found = visitor.leaf(first..first + count as usize, t_max, limit);
+                if found < 0.0 {
+                    return;
+                }
+                if found < t_max {
+                    t_max = found;
+                    limit = entry.limit(t_max);
+                }
             }
-            if found < t_max {
-                t_max = found;
-                limit = ray.limit(t_max);
-            }
-            None
-        };
-        match nearest.or_else(|| stack.next(limit)) {
-            Some(next) => current = next,
-            None => return,
+            next = stack.next(limit);
         }
     }
 }
 
-/// Insertion sort of a few; ties keep the first child on top.
+/// Insertion sort of a few.
 #[inline(always)]
-fn sort_far_first(entries: &mut [Entry]) {
+fn sort_far_first(entries: &mut [Pending]) {
     for i in 1..entries.len() {
         let mut j = i;
-        while j > 0 && entries[j].near >= entries[j - 1].near {
+        while j > 0 && entries[j] > entries[j - 1] {
             entries.swap(j, j - 1);
             j -= 1;
         }

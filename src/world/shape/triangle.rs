@@ -19,8 +19,8 @@ use glam::{DVec2, DVec3};
 pub struct Sheared {
     origin: DVec3,
     direction: DVec3,
-    /// The ray's largest axis, which is z after the shear; x and y are the next two.
-    z: usize,
+    /// The ray's largest axis last, which is z after the shear; x and y are the two after it.
+    axes: [usize; 3],
     /// x and y of the direction over its z, and 1 over its z.
     shear: [f64; 3],
 }
@@ -33,44 +33,47 @@ impl Sheared {
     /// Prepares a ray.
     pub fn new(ray: &LocalRay) -> Sheared {
         let (d, size) = (ray.direction, ray.direction.abs());
-        let (z, [x, y, along]) = if size.x > size.y && size.x > size.z {
-            (0, [d.y, d.z, d.x])
+        let (axes, [x, y, along]) = if size.x > size.y && size.x > size.z {
+            ([1, 2, 0], [d.y, d.z, d.x])
         } else if size.y > size.z {
-            (1, [d.z, d.x, d.y])
+            ([2, 0, 1], [d.z, d.x, d.y])
         } else {
-            (2, [d.x, d.y, d.z])
+            ([0, 1, 2], [d.x, d.y, d.z])
         };
-        let shear = [x / along, y / along, 1.0 / along];
-        Sheared { origin: ray.origin, direction: ray.direction, z, shear }
+        let inverse = 1.0 / along;
+        let shear = [x * inverse, y * inverse, inverse];
+        Sheared { origin: ray.origin, direction: ray.direction, axes, shear }
+    }
+
+    /// Axes that are x, y and z after the shear: the ray's largest is z.
+    pub fn axes(&self) -> [usize; 3] {
+        self.axes
+    }
+
+    /// x and y of the direction over its z, and 1 over its z.
+    pub fn shear(&self) -> [f64; 3] {
+        self.shear
     }
 
     /// A corner relative to the ray: sheared x and y, and z unsheared.
     #[inline(always)]
-    fn corner<const Z: usize>(&self, p: DVec3) -> [f64; 3] {
-        let q = (p - self.origin).to_array();
-        let [x, y] = [(Z + 1) % 3, (Z + 2) % 3];
-        [q[x] - self.shear[0] * q[Z], q[y] - self.shear[1] * q[Z], q[Z]]
+    fn corner(&self, p: &DVec3) -> [f64; 3] {
+        let (p, o): (&[f64; 3], &[f64; 3]) = (p.as_ref(), self.origin.as_ref());
+        let [x, y, z] = self.axes;
+        let z = p[z] - o[z];
+        [(p[x] - o[x]) - self.shear[0] * z, (p[y] - o[y]) - self.shear[1] * z, z]
     }
 
     /// All three, one by one: mapping an array costs as much as the test.
     #[inline(always)]
-    fn corners<const Z: usize>(&self, [a, b, c]: [DVec3; 3]) -> [[f64; 3]; 3] {
-        [self.corner::<Z>(a), self.corner::<Z>(b), self.corner::<Z>(c)]
+    fn corners(&self, [a, b, c]: [&DVec3; 3]) -> [[f64; 3]; 3] {
+        [self.corner(a), self.corner(b), self.corner(c)]
     }
 
     /// Where the ray meets the triangle, at a distance in (0, limit]; from either side.
     #[inline(always)]
-    pub fn meet(&self, corners: [DVec3; 3], limit: f64) -> Option<Meet> {
-        match self.z {
-            0 => self.meet_along::<0>(corners, limit),
-            1 => self.meet_along::<1>(corners, limit),
-            _ => self.meet_along::<2>(corners, limit),
-        }
-    }
-
-    #[inline(always)]
-    fn meet_along<const Z: usize>(&self, corners: [DVec3; 3], limit: f64) -> Option<Meet> {
-        let [a, b, c] = self.corners::<Z>(corners);
+    pub fn meet(&self, corners: [&DVec3; 3], limit: f64) -> Option<Meet> {
+        let [a, b, c] = self.corners(corners);
         let mut u = c[0] * b[1] - c[1] * b[0];
         let mut v = a[0] * c[1] - a[1] * c[0];
         let mut w = b[0] * a[1] - b[1] * a[0];
@@ -92,19 +95,15 @@ impl Sheared {
         let mut t = sum * self.shear[2] * inverse;
         let depth = a[2].abs().max(b[2].abs()).max(c[2].abs()) * self.shear[2].abs();
         if t.abs() <= depth * NEAR {
-            t = self.distance_by_plane(corners)?;
+            t = self.distance_by_plane(corners.map(|p| *p))?;
         }
         (t > 0.0 && t <= limit).then_some(Meet { t, a: v * inverse, b: w * inverse, face: 0, part: 0 })
     }
 
     /// Whether a triangle that the ray meets also holds the ray moved by (ε, ε²) across its axis, ε as small as it takes. Of two
     /// triangles with a common edge one does, and of all those around a point of a closed surface as many go in as come out.
-    pub fn is_owner(&self, corners: [DVec3; 3]) -> bool {
-        let [a, b, c] = match self.z {
-            0 => self.corners::<0>(corners),
-            1 => self.corners::<1>(corners),
-            _ => self.corners::<2>(corners),
-        };
+    pub fn is_owner(&self, corners: [&DVec3; 3]) -> bool {
+        let [a, b, c] = self.corners(corners);
         let [u, v, w] = [side(c, b), side(a, c), side(b, a)];
         u != 0 && u == v && v == w
     }
@@ -229,7 +228,7 @@ pub struct Triangle(pub scene::Triangle);
 
 impl Triangle {
     pub(super) fn meet(&self, ray: &LocalRay, limit: f64) -> Option<Meet> {
-        Sheared::new(ray).meet(self.0.vertices, limit)
+        Sheared::new(ray).meet(self.0.vertices.each_ref(), limit)
     }
 
     pub(super) fn surface(&self, meet: &Meet) -> Surface {

@@ -2,7 +2,7 @@
 //! instructions.
 
 use super::wide::meets;
-use super::{Narrow, clip_by, walk};
+use super::{Entry, Leaves, Narrow, walk};
 use crate::world::bvh::Tree;
 use glam::DVec3;
 use std::cell::Cell;
@@ -17,19 +17,21 @@ impl Tree {
         mut t_max: f64,
         mut leaf: impl FnMut(Range<usize>, f64) -> f64,
     ) -> u64 {
-        if self.bounded < self.order.len() {
-            t_max = leaf(self.bounded..self.order.len(), t_max);
+        let loose = self.loose();
+        if !loose.is_empty() {
+            t_max = leaf(loose, t_max);
         }
-        let inverse = direction.recip();
-        let start = clip_by(&self.bounds, origin, inverse, t_max).map(|(start, _)| start);
-        let Some(start) = start.filter(|_| !self.nodes.is_empty() && t_max >= 0.0) else { return 0 };
-        let ray = Narrow::new(self, origin, direction, inverse, start);
+        if self.nodes.is_empty() || !(t_max >= 0.0) {
+            return 0;
+        }
+        let Some(entry) = Entry::new(&self.frame, &self.bounds, origin, direction, t_max) else { return 0 };
+        let ray = Narrow::new(&entry);
         let visits = Cell::new(0);
         let count = |node: &_, limit| {
             visits.set(visits.get() + 1);
             meets(&ray, node, limit)
         };
-        walk(&self.nodes, &ray, t_max, count, leaf);
+        walk(&self.nodes, &entry, t_max, count, &mut Leaves(leaf));
         visits.get()
     }
 }

@@ -1,21 +1,28 @@
-//! The test of a node's children, and the traversal around it, compiled for what the processor has: only how many children one
-//! instruction tests differs, not one operation or its order, so that every picture is the same on all of them. Knows nothing of
-//! what is traversed. One of the two rooms of the tree with unsafe code: there is no other
-//! way to such instructions.
+//! The test of a node's children, what a ray needs for it, and the traversal around both, compiled for what the processor has: only
+//! how many numbers one instruction takes differs, not one operation, so that every picture is the same on all of them.
+//! Knows nothing of what is traversed. One of the two rooms of the tree with unsafe code: there is no other way to such instructions.
 
-use super::{Met, Narrow, Node, WIDTH};
-use std::ops::Range;
+use super::{Entry, Met, Narrow, Node, SLOT, Tree, Visitor, WIDTH};
+use glam::DVec3;
 
-/// [`super::walk`] with the widest instructions that there are.
+/// [`super::walk`] from where a ray enters, with the widest instructions that there are.
 #[inline(always)]
-pub(super) fn walk(nodes: &[Node], ray: &Narrow, t_max: f64, leaf: impl FnMut(Range<usize>, f64) -> f64) {
+pub(super) fn traverse(tree: &Tree, origin: DVec3, direction: DVec3, t_max: f64, visitor: &mut impl Visitor) {
     #[cfg(target_arch = "x86_64")]
     if std::arch::is_x86_feature_detected!("avx2") {
         // SAFETY: the processor has just been found to have what the function is compiled for.
         #[allow(unsafe_code, reason = "code for instructions that not every processor has")]
-        return unsafe { x86::walk_avx2(nodes, ray, t_max, leaf) };
+        return unsafe { x86::traverse_avx2(tree, origin, direction, t_max, visitor) };
     }
-    super::walk(nodes, ray, t_max, |node, limit| meets(ray, node, limit), leaf);
+    plain(tree, origin, direction, t_max, visitor);
+}
+
+/// The same by plain operations.
+fn plain(tree: &Tree, origin: DVec3, direction: DVec3, t_max: f64, visitor: &mut impl Visitor) {
+    let Some(entry) = Entry::new(&tree.frame, &tree.bounds, origin, direction, t_max) else { return };
+    let ray = Narrow::new(&entry);
+    visitor.enter(&entry);
+    super::walk(&tree.nodes, &entry, t_max, |node, limit| meets(&ray, node, limit), visitor);
 }
 
 /// The test by plain operations: the definition of what the others do.
@@ -23,7 +30,8 @@ pub(super) fn walk(nodes: &[Node], ray: &Narrow, t_max: f64, leaf: impl FnMut(Ra
 pub(super) fn meets(ray: &Narrow, node: &Node, limit: f32) -> Met {
     let (mut near, mut far) = ([0.0f32; WIDTH], [limit; WIDTH]);
     for a in 0..3 {
-        let (enter, leave) = (&node.rows[ray.near_row[a] & 7], &node.rows[ray.far_row[a] & 7]);
+        let (enter, leave) = ray.rows(a);
+        let (enter, leave) = (&node.rows[enter & 7], &node.rows[leave & 7]);
         for i in 0..WIDTH {
             let x = (enter[i] - ray.near_origin[a]) * ray.near_inverse[a];
             near[i] = if x > near[i] { x } else { near[i] };
@@ -32,22 +40,26 @@ pub(super) fn meets(ray: &Narrow, node: &Node, limit: f32) -> Met {
         }
     }
     let mask = (0..WIDTH).fold(0, |mask, i| mask | u32::from(near[i] <= far[i]) << i);
-    (mask, near)
+    (mask, std::array::from_fn(|i| near[i].to_bits() & !SLOT | i as u32))
 }
 
 #[cfg(target_arch = "x86_64")]
 mod x86 {
-    use super::{Met, Narrow, Node, Range, WIDTH};
+    use super::*;
     use std::arch::x86_64::*;
 
     #[target_feature(enable = "avx2")]
-    pub(super) fn walk_avx2(
-        nodes: &[Node],
-        ray: &Narrow,
+    pub(super) fn traverse_avx2(
+        tree: &Tree,
+        origin: DVec3,
+        direction: DVec3,
         t_max: f64,
-        leaf: impl FnMut(Range<usize>, f64) -> f64,
+        visitor: &mut impl Visitor,
     ) {
-        super::super::walk(nodes, ray, t_max, |node, limit| meets_avx2(ray, node, limit), leaf);
+        let Some(entry) = Entry::new(&tree.frame, &tree.bounds, origin, direction, t_max) else { return };
+        let ray = Narrow::new(&entry);
+        visitor.enter(&entry);
+        super::super::walk(&tree.nodes, &entry, t_max, |node, limit| meets_avx2(&ray, node, limit), visitor);
     }
 
     /// [`super::meets`], eight children at once. The larger and the smaller of two give their second operand where one is NaN, as
@@ -57,15 +69,17 @@ mod x86 {
     fn meets_avx2(ray: &Narrow, node: &Node, limit: f32) -> Met {
         let (mut near, mut far) = (_mm256_setzero_ps(), _mm256_set1_ps(limit));
         for a in 0..3 {
-            let (enter, leave) =
-                (load(&node.rows[ray.near_row[a] & 7]), load(&node.rows[ray.far_row[a] & 7]));
+            let (enter, leave) = ray.rows(a);
+            let (enter, leave) = (load(&node.rows[enter & 7]), load(&node.rows[leave & 7]));
             let x = _mm256_sub_ps(enter, _mm256_set1_ps(ray.near_origin[a]));
             near = _mm256_max_ps(_mm256_mul_ps(x, _mm256_set1_ps(ray.near_inverse[a])), near);
             let y = _mm256_sub_ps(leave, _mm256_set1_ps(ray.far_origin[a]));
             far = _mm256_min_ps(_mm256_mul_ps(y, _mm256_set1_ps(ray.far_inverse[a])), far);
         }
         let mask = _mm256_movemask_ps(_mm256_cmp_ps::<_CMP_LE_OQ>(near, far));
-        (mask as u32, store(near))
+        let slots = _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7);
+        let keys = _mm256_andnot_si256(_mm256_set1_epi32(SLOT as i32), _mm256_castps_si256(near));
+        (mask as u32, store(_mm256_or_si256(keys, slots)))
     }
 
     #[target_feature(enable = "avx2")]
@@ -79,30 +93,31 @@ mod x86 {
     #[target_feature(enable = "avx2")]
     #[inline]
     #[allow(unsafe_code, reason = "a vector register has no safe way to memory")]
-    fn store(vector: __m256) -> [f32; WIDTH] {
-        let mut lanes = [0.0; WIDTH];
-        // SAFETY: eight floats are written to an array of eight; no alignment is asked for.
-        unsafe { _mm256_storeu_ps(lanes.as_mut_ptr(), vector) };
+    fn store(vector: __m256i) -> [u32; WIDTH] {
+        let mut lanes = [0; WIDTH];
+        // SAFETY: eight words are written to an array of eight; no alignment is asked for.
+        unsafe { _mm256_storeu_si256(lanes.as_mut_ptr().cast(), vector) };
         lanes
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::super::{Narrow, clip};
     use super::*;
     use crate::math::Aabb;
-    use crate::world::bvh::Tree;
-    use glam::DVec3;
+    use std::ops::Range;
 
-    /// What is offered, in order, by a traversal that never finds anything.
-    fn offered(walk: impl FnOnce(&mut dyn FnMut(Range<usize>, f64) -> f64)) -> Vec<Range<usize>> {
-        let mut all = Vec::new();
-        walk(&mut |range, t_max| {
-            all.push(range);
+    /// What is offered, in order, where nothing is ever found.
+    #[derive(Default)]
+    struct Offered(Vec<Range<usize>>);
+
+    impl Visitor for Offered {
+        fn enter(&mut self, _: &Entry) {}
+
+        fn leaf(&mut self, range: Range<usize>, t_max: f64, _: f32) -> f64 {
+            self.0.push(range);
             t_max
-        });
-        all
+        }
     }
 
     #[test]
@@ -116,13 +131,11 @@ mod tests {
             let origin = corner(i + 7) * 3.0;
             // Some along an axis, where planes meet 0·∞.
             let direction = if i % 5 == 0 { DVec3::AXES[i % 3] } else { (corner(i) - origin).normalize() };
-            let Some((start, _)) = clip(&tree.bounds, origin, direction, 1e3) else { continue };
-            let ray = Narrow::new(&tree, origin, direction, direction.recip(), start);
-            let plain = offered(|leaf| {
-                super::super::walk(&tree.nodes, &ray, 1e3, |node, limit| meets(&ray, node, limit), leaf);
-            });
-            n_offered += plain.len();
-            assert_eq!(offered(|leaf| walk(&tree.nodes, &ray, 1e3, leaf)), plain, "ray {i}");
+            let (mut by_plain, mut by_wide) = (Offered::default(), Offered::default());
+            plain(&tree, origin, direction, 1e3, &mut by_plain);
+            traverse(&tree, origin, direction, 1e3, &mut by_wide);
+            n_offered += by_plain.0.len();
+            assert_eq!(by_wide.0, by_plain.0, "ray {i}");
         }
         assert!(n_offered > 1000, "{n_offered}");
     }
