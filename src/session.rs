@@ -20,6 +20,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 pub use crate::lang::limits::Limits;
+pub use crate::math::vectors::{has_avx2, keep_to_baseline};
 pub use answer::Answer;
 
 /// What a run is asked for.

@@ -22,6 +22,7 @@ pub mod point;
 pub mod quadrature;
 pub mod random;
 pub mod solve;
+pub mod vectors;
 
 pub use affine::Affine;
 pub use bounds::Aabb;

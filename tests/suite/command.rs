@@ -51,6 +51,34 @@ fn scenes_come_from_standard_input_and_pictures_go_to_standard_output() {
     assert_eq!(size_of(&run.stdout), (16, 12));
 }
 
+/// A mesh of a surface, spheres along a spline, and light from an area: whatever has code for wider instructions.
+const WIDE: &str = "
+camera { eye <0, 3, 5>  look_at <0, 0.5, 0>  fov 50 }
+light { area disc { center <2, 4, 1>  normal <0, -1, 0>  radius 0.7 }  radiance 8 }
+plane { normal y  offset 0 }
+patch { bspline <-1, 0, -1>, <0, 0, -1>, <1, 0, -1>, <2, 0, -1>, <-1, 0, 0>, <0, 3, 0>, <1, 0, 0>, <2, 0, 0>, <-1, 0, 1>, <0, 0, 1>, <1, 3, 1>, <2, 0, 1>, <-1, 0, 2>, <0, 0, 2>, <1, 0, 2>, <2, 0, 2> }
+let way = spline { bezier <-2, 0, 1>, <-1, 2, 1>, <1, 0, 2>, <2, 1, 0> }
+for i in 0..40 { sphere { center way(i / 40)  radius 0.1 } }
+";
+
+#[test]
+fn a_processor_without_wide_instructions_makes_the_same_picture() {
+    let folder = Folder::with(&[("wide.scene", WIDE)]);
+    let render = "render wide.scene --size 40x30 --tracer path --samples 4 -o wide.exr --stats json";
+    let mut made = Vec::new();
+    for baseline in [false, true] {
+        let mut command = folder.command(render);
+        if baseline {
+            command.env("OGEE_BASELINE", "1");
+        }
+        let run = command.output().unwrap();
+        let stats: serde_json::Value = serde_json::from_slice(&run.stdout).expect("statistics");
+        assert!(!baseline || stats["vectors"] == "baseline", "{stats}");
+        made.push(folder.read("wide.exr"));
+    }
+    assert!(made[0] == made[1]);
+}
+
 #[test]
 fn flags_come_before_what_the_scene_says() {
     let text = format!("{BALL}let unused = 1\nrender {{ size 64, 48  samples 2 }}\n");

@@ -137,6 +137,7 @@ pub fn json(
             "scattered": rays.scattered,
             "total": rays.total(),
         },
+        "vectors": if ogee::session::has_avx2() { "avx2" } else { "baseline" },
         "world": prepared.world.stats(),
         "samples_left_out": film.report.non_finite,
     });

@@ -10,7 +10,7 @@ use crate::math::{Dd, Point};
 pub(super) fn nested<P: Point>(coefficients: &[Dd<P::Lanes>; 4], s: Dd) -> Option<P> {
     #[cfg(target_arch = "x86_64")]
     if let Some(four) = (coefficients as &dyn std::any::Any).downcast_ref()
-        && std::arch::is_x86_feature_detected!("avx")
+        && crate::math::vectors::has_avx2()
     {
         // SAFETY: the processor has just been found to have what the function is compiled for.
         #[allow(unsafe_code, reason = "code for instructions that not every processor has")]

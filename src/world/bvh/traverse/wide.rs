@@ -9,7 +9,7 @@ use glam::DVec3;
 #[inline(always)]
 pub(super) fn traverse(tree: &Tree, origin: DVec3, direction: DVec3, t_max: f64, visitor: &mut impl Visitor) {
     #[cfg(target_arch = "x86_64")]
-    if std::arch::is_x86_feature_detected!("avx2") {
+    if crate::math::vectors::has_avx2() {
         // SAFETY: the processor has just been found to have what the function is compiled for.
         #[allow(unsafe_code, reason = "code for instructions that not every processor has")]
         return unsafe { x86::traverse_avx2(tree, origin, direction, t_max, visitor) };
