@@ -72,6 +72,14 @@ impl Tree {
         }
     }
 
+    /// Memory of the nodes, and of what is in the leaves, bytes.
+    pub fn bytes(&self) -> [usize; 2] {
+        match self {
+            Tree::Bvh(tree) => tree.bytes(),
+            Tree::KdTree(tree) => tree.bytes(),
+        }
+    }
+
     /// How many nodes it has.
     pub fn node_count(&self) -> usize {
         match self {

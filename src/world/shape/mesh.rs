@@ -106,6 +106,27 @@ impl MeshShape {
         }
     }
 
+    /// As [`MeshShape::meetings`] where there are packs, for those who measure; gives how many nodes were visited and packs tested.
+    pub fn meetings_counting(
+        &self,
+        ray: &LocalRay,
+        limit: f64,
+        found: impl FnMut(u32, Meet) -> f64,
+    ) -> [u64; 2] {
+        let Tree::Bvh(tree) = &self.tree else { return [0; 2] };
+        let walk = Walk { shape: self, exact: Sheared::new(ray), packs: PackRay::default(), found };
+        let mut counted = Counted { walk, packs: 0 };
+        let limit = counted.walk.decide_all(tree.loose(), limit);
+        let nodes = tree.visit_counting(ray.origin, ray.direction, limit, &mut counted);
+        [nodes, counted.packs]
+    }
+
+    /// Memory of the tree's nodes, and of packs and the order of triangles, bytes.
+    pub fn tree_bytes(&self) -> [usize; 2] {
+        let [nodes, order] = self.tree.bytes();
+        [nodes, order + size_of_val(&*self.packs)]
+    }
+
     /// Every meeting with t > 0, ascending, ties by triangle: as [`super::Shape::crossings`], with the triangle's number as the face.
     ///
     /// A ray through an edge or a corner of a closed mesh meets several triangles in one place. Each edge belongs to one of its two
@@ -198,6 +219,23 @@ impl<F: FnMut(u32, Meet) -> f64> Visitor for Walk<'_, F> {
             }
         }
         t_max
+    }
+}
+
+/// A walk that counts packs.
+struct Counted<W> {
+    walk: W,
+    packs: u64,
+}
+
+impl<W: Visitor> Visitor for Counted<W> {
+    fn enter(&mut self, entry: &Entry) {
+        self.walk.enter(entry);
+    }
+
+    fn leaf(&mut self, range: Range<usize>, t_max: f64, limit: f32) -> f64 {
+        self.packs += range.len().div_ceil(LANES) as u64;
+        self.walk.leaf(range, t_max, limit)
     }
 }
 
