@@ -28,19 +28,21 @@ pub mod settings;
 pub mod tiles;
 pub mod whitted;
 
-/// The tracer of a name, ready for a world as a camera sees it.
+/// The tracer of a name, ready for a world as a camera sees it. What it makes beforehand is made on the settings' threads and
+/// watched; none where that is called off.
 pub fn tracer(
     kind: TracerKind,
     world: &World,
     view: &camera::View,
     settings: &settings::ResolvedSettings,
-) -> Box<dyn Tracer> {
-    match kind {
+    watch: tiles::Watch<'_>,
+) -> Option<Box<dyn Tracer>> {
+    Some(match kind {
         TracerKind::Raycast => Box::new(whitted::Whitted::raycast(world, settings)),
         TracerKind::Whitted => Box::new(whitted::Whitted::new(world, settings)),
         TracerKind::Path => Box::new(path::Path::new(world, settings)),
         TracerKind::MonteCarlo => Box::new(path::Path::branching(world, settings)),
-        TracerKind::Irradiance => Box::new(path::Path::with_records(world, view, settings)),
-        TracerKind::Photon => Box::new(path::Path::with_photons(world, settings)),
-    }
+        TracerKind::Irradiance => Box::new(path::Path::with_records(world, view, settings, watch)?),
+        TracerKind::Photon => Box::new(path::Path::with_photons(world, settings, watch)?),
+    })
 }

@@ -25,6 +25,7 @@ impl<'a> Passes<'a> {
     /// Takes the samples up to number `to` of each pixel; false where that was cancelled.
     pub fn advance(&mut self, to: u32, progress: &dyn Progress, cancel: &AtomicBool) -> bool {
         self.to = to;
+        progress.phase("");
         let (done, picture) = (AtomicUsize::new(0), self.picture);
         let work = |tile: &Mutex<Tile>| {
             if locked(tile).advance(picture, to, cancel) {

@@ -20,6 +20,7 @@ use super::medium::Inside;
 use super::photon::Maps;
 use super::sampler::Sampler;
 use super::settings::ResolvedSettings;
+use super::tiles::Watch;
 use crate::scene::Rgb;
 use crate::world::bsdf::{Bounce, Bsdf, Odds};
 use crate::world::light::{Ball, Choice, LightEnd, Lights};
@@ -148,16 +149,23 @@ impl Path {
         Path { branches: BRANCHES, ..Path::new(world, settings) }
     }
 
-    /// Paths that photons end.
-    pub fn with_photons(world: &World, settings: &ResolvedSettings) -> Path {
+    /// Paths that photons end. None where shooting them is called off.
+    pub fn with_photons(world: &World, settings: &ResolvedSettings, watch: Watch<'_>) -> Option<Path> {
         let path = Path::new(world, settings);
-        Path { photons: Some(Maps::new(world, &path.lights, &path.choice, settings)), ..path }
+        let maps = Maps::new(world, &path.lights, &path.choice, settings, watch)?;
+        Some(Path { photons: Some(maps), ..path })
     }
 
-    /// Paths that end where records of irradiance tell the rest.
-    pub fn with_records(world: &World, view: &View, settings: &ResolvedSettings) -> Path {
+    /// Paths that end where records of irradiance tell the rest. None where making them is called off.
+    pub fn with_records(
+        world: &World,
+        view: &View,
+        settings: &ResolvedSettings,
+        watch: Watch<'_>,
+    ) -> Option<Path> {
         let path = Path::new(world, settings);
-        Path { records: Some(Records::new(world, &path, view, settings)), ..path }
+        let records = Records::new(world, &path, view, settings, watch)?;
+        Some(Path { records: Some(records), ..path })
     }
 }
 

@@ -14,13 +14,37 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 /// Told how far a picture is. Called from any thread, in any order.
 pub trait Progress: Sync {
-    /// `done` of `total` tiles are finished.
+    /// What is done from now on, before or after the tiles; empty for the tiles themselves.
+    fn phase(&self, _name: &'static str) {}
+
+    /// `done` of `total` tiles, or parts of another phase, are finished.
     fn tiles(&self, done: usize, total: usize);
 }
 
 /// Nobody is told.
 impl Progress for () {
     fn tiles(&self, _done: usize, _total: usize) {}
+}
+
+/// Who looks on: is told how far the work is, and may call it off.
+#[derive(Clone, Copy)]
+pub struct Watch<'a> {
+    /// Who is told.
+    pub progress: &'a dyn Progress,
+    /// True once the work is called off.
+    pub cancel: &'a AtomicBool,
+}
+
+impl Watch<'_> {
+    /// True where the work is to end.
+    pub fn is_over(self) -> bool {
+        self.cancel.load(Ordering::Relaxed)
+    }
+
+    /// None where the work is to end.
+    pub fn go_on(self) -> Option<()> {
+        (!self.is_over()).then_some(())
+    }
 }
 
 /// Everything of a picture that is the same at each of its pixels.
@@ -67,6 +91,7 @@ pub fn render_onto(
     progress: &dyn Progress,
     cancel: &AtomicBool,
 ) {
+    progress.phase("");
     let tiles = tiles_of(picture.settings.crop, tile);
     let done = AtomicUsize::new(0);
     let work = |crop: &Crop| {
@@ -88,11 +113,17 @@ pub(super) fn run<T: Sync>(threads: Option<usize>, tiles: &[T], work: &(dyn Fn(&
     match threads {
         Some(0 | 1) => tiles.iter().for_each(work),
         _ if tiles.len() == 1 => tiles.iter().for_each(work),
-        None => one_each(),
-        Some(n) => match rayon::ThreadPoolBuilder::new().num_threads(n).build() {
-            Ok(pool) => pool.install(one_each),
-            Err(_) => tiles.iter().for_each(work),
-        },
+        _ => on_threads(threads, one_each),
+    }
+}
+
+/// Does work that shares itself out on as many threads as asked for, at least one; on those that there are where none is said, or no more
+/// can be had.
+pub(super) fn on_threads<T: Send>(threads: Option<usize>, work: impl FnOnce() -> T + Send) -> T {
+    let pool = |n: usize| rayon::ThreadPoolBuilder::new().num_threads(n.max(1)).build().ok();
+    match threads.and_then(pool) {
+        Some(pool) => pool.install(work),
+        None => work(),
     }
 }
 

@@ -181,7 +181,7 @@ impl Animation<'_> {
         self.evaluate(frame)
     }
 
-    /// Builds the world of a frame, of meshes and pictures that are ready where frames before had them, and all else that its picture needs;
+    /// Builds the world of a frame, of meshes and pictures that are ready where frames before had them;
     /// see [`picture::prepare`].
     pub fn prepare(
         &mut self,

@@ -10,7 +10,7 @@ use crate::render::features::Layers;
 use crate::render::film::{Fault, Film};
 use crate::render::passes::Passes;
 use crate::render::settings::{Crop, ResolvedSettings};
-use crate::render::tiles::{self, Picture, Progress};
+use crate::render::tiles::{self, Picture, Progress, Watch};
 use crate::render::{self, Tracer};
 use crate::scene::assets::{AssetCache, Loader};
 use crate::scene::{Camera, RenderSettings, SamplerKind, Scene, TracerKind};
@@ -37,14 +37,13 @@ pub struct Job {
     pub threads: Option<usize>,
 }
 
-/// Everything that a picture needs.
+/// Everything that a picture needs but what its tracer makes beforehand.
 pub struct Prepared {
     /// What is seen.
     pub world: World,
-    /// How.
+    /// How; may be changed between pictures, but for size, crop and tree.
     pub settings: ResolvedSettings,
     view: View,
-    tracer: Box<dyn Tracer>,
 }
 
 /// The settings of a job for a scene, and what keeps them from being used. Cheap: nothing is built.
@@ -62,7 +61,7 @@ pub fn settings(scene: &Scene, job: &Job) -> Result<ResolvedSettings, String> {
     Ok(settings)
 }
 
-/// Builds the world and all else that the picture needs. The diagnostics tell what is wrong with the scene as a whole and
+/// Builds the world. The diagnostics tell what is wrong with the scene as a whole and
 /// with the files it names; with an error among them nothing is prepared.
 pub fn prepare(
     scene: Scene,
@@ -96,9 +95,8 @@ pub fn prepare_frame(
     let options = WorldOptions { accelerator: settings.accelerator, footprint: Some(view.footprint()) };
     let (world, of_world) = World::with_assets(scene.nodes, &options, assets, kept);
     found.extend(of_world);
-    let tracer = render::tracer(settings.tracer, &world, &view, &settings);
     let has_errors = found.iter().any(|d| d.severity == crate::diag::Severity::Error);
-    ((!has_errors).then_some(Prepared { world, settings, view, tracer }), found)
+    ((!has_errors).then_some(Prepared { world, settings, view }), found)
 }
 
 /// The camera with this label, or the first; none where there is none, which [`whole::faults`] tells.
@@ -118,30 +116,33 @@ fn choose<'a>(scene: &'a Scene, label: Option<&str>) -> Result<Option<&'a Camera
 }
 
 impl Prepared {
-    fn picture(&self) -> Picture<'_> {
-        Picture { world: &self.world, view: &self.view, tracer: &*self.tracer, settings: &self.settings }
+    fn picture<'a>(&'a self, tracer: &'a dyn Tracer) -> Picture<'a> {
+        Picture { world: &self.world, view: &self.view, tracer, settings: &self.settings }
+    }
+
+    /// The tracer, with all that it makes beforehand: photons, records. None once `cancel` is true.
+    pub fn tracer(&self, progress: &dyn Progress, cancel: &AtomicBool) -> Option<Box<dyn Tracer>> {
+        let watch = Watch { progress, cancel };
+        render::tracer(self.settings.tracer, &self.world, &self.view, &self.settings, watch)
     }
 
     /// Renders. Once `cancel` is true the film comes back as far as it is.
     pub fn render(&self, progress: &dyn Progress, cancel: &AtomicBool) -> Film {
         let film = Mutex::new(self.bare_film());
-        self.render_onto(&film, progress, cancel);
+        if let Some(tracer) = self.tracer(progress, cancel) {
+            self.render_onto(&film, &*tracer, progress, cancel);
+        }
         film.into_inner().unwrap_or_else(|poisoned| poisoned.into_inner())
     }
 
-    /// The same world by another tracer, with all that it makes beforehand. The camera and the tree stay as they are.
-    pub fn retraced(self, settings: ResolvedSettings) -> Prepared {
-        let tracer = render::tracer(settings.tracer, &self.world, &self.view, &settings);
-        Prepared { settings, tracer, ..self }
-    }
-
     /// The picture in passes. Photons and irradiance cannot: how many there are depends on the number of samples.
-    pub fn passes(&self) -> Option<Passes<'_>> {
+    pub fn passes<'a>(&'a self, tracer: &'a dyn Tracer) -> Option<Passes<'a>> {
         let goes_on = match self.settings.tracer {
             TracerKind::Raycast | TracerKind::Whitted | TracerKind::MonteCarlo | TracerKind::Path => true,
             TracerKind::Irradiance | TracerKind::Photon => false,
         };
-        (goes_on && self.settings.sampler != SamplerKind::Stratified).then(|| Passes::new(self.picture()))
+        (goes_on && self.settings.sampler != SamplerKind::Stratified)
+            .then(|| Passes::new(self.picture(tracer)))
     }
 
     /// A film on which nothing is yet.
@@ -163,8 +164,14 @@ impl Prepared {
     }
 
     /// Renders onto a bare film that others may look at meanwhile: every tile that is finished is on it. Noise is filtered at the end.
-    pub fn render_onto(&self, film: &Mutex<Film>, progress: &dyn Progress, cancel: &AtomicBool) {
-        tiles::render_onto(film, self.picture(), tiles::TILE, progress, cancel);
+    pub fn render_onto(
+        &self,
+        film: &Mutex<Film>,
+        tracer: &dyn Tracer,
+        progress: &dyn Progress,
+        cancel: &AtomicBool,
+    ) {
+        tiles::render_onto(film, self.picture(tracer), tiles::TILE, progress, cancel);
         self.filter(film, progress, cancel);
     }
 }

@@ -217,6 +217,23 @@ fn an_interrupted_animation_keeps_its_whole_frames_and_no_other() {
     assert!(names.iter().all(|name| !name.contains(".part")), "{names:?}");
 }
 
+/// The second frame's records take sixteen million rays each.
+#[cfg(unix)]
+#[test]
+fn frames_stay_where_the_next_is_interrupted_before_its_first_pixel() {
+    let text = "camera { eye <0, 0, 5>  look_at <0, 0, 0> }\nlight { sky 0.8 }\nsphere { }\n\
+                render { tracer irradiance  size 24, 16  frames 3  samples frame == 0 ? 1 : 1000000 }\n";
+    let folder = Folder::with(&[("a.scene", text)]);
+    for output in ["f{frame}.png", "a.gif"] {
+        let mut child = folder.command(&format!("render a.scene -o {output}")).spawn().unwrap();
+        std::thread::sleep(std::time::Duration::from_millis(1500));
+        let kill = std::process::Command::new("kill").args(["-INT", &child.id().to_string()]).status();
+        assert!(kill.unwrap().success());
+        assert_eq!(child.wait().unwrap().code(), Some(130));
+    }
+    assert_eq!(folder.names(), ["a.gif", "a.scene", "f0.png"]);
+}
+
 /// Files in memory, and how often each was read.
 struct Counting {
     files: BTreeMap<&'static str, Vec<u8>>,

@@ -227,6 +227,25 @@ fn an_interrupted_picture_is_saved_as_far_as_it_is() {
     assert_eq!(folder.names(), ["ball.png", "ball.scene"]);
 }
 
+/// A picture of which a single record takes sixteen million rays.
+#[cfg(unix)]
+#[test]
+fn an_interruption_before_the_first_pixel_leaves_what_was_there() {
+    let text = "camera { eye <0, 0, 5>  look_at <0, 0, 0> }\nlight { sky 0.8 }\nsphere { }\nplane { normal y  offset -1 }\n";
+    let folder = Folder::with(&[("a.scene", text), ("a.png", "old")]);
+    let line = "render a.scene --tracer irradiance --samples 1000000 --size 64x48";
+    let child = folder.command(line).stderr(Stdio::piped()).spawn().unwrap();
+    std::thread::sleep(Duration::from_millis(700));
+    let pid = child.id().to_string();
+    assert!(std::process::Command::new("kill").args(["-INT", &pid]).status().unwrap().success());
+    let run = child.wait_with_output().unwrap();
+    assert_eq!(run.status.code(), Some(130));
+    let said = String::from_utf8(run.stderr).unwrap();
+    assert!(said.contains("a.png  not written: interrupted before its first pixel"), "{said}");
+    assert_eq!(folder.read("a.png"), b"old");
+    assert_eq!(folder.names(), ["a.png", "a.scene"]);
+}
+
 /// Each ray of this meets 3²⁵ spheres: none ever comes back.
 #[cfg(unix)]
 #[test]

@@ -13,7 +13,7 @@ const Y: DVec3 = DVec3::Y;
 const Z: DVec3 = DVec3::Z;
 
 fn by(tracer: TracerKind, size: [u32; 2], samples: u32) -> ResolvedSettings {
-    ResolvedSettings { tracer, depth: u32::MAX, samples, ..settings(size) }
+    ResolvedSettings { tracer, depth: u32::MAX, samples, threads: None, ..settings(size) }
 }
 
 fn records(size: [u32; 2], samples: u32) -> ResolvedSettings {
@@ -168,7 +168,7 @@ fn records_and_paths_agree_among_gloss_mirrors_and_glass() {
     let (world, camera) = (world(furniture()), into_the_room());
     for depth in [u32::MAX, 4] {
         let of = |tracer, samples| {
-            let settings = ResolvedSettings { depth, threads: None, ..by(tracer, [48, 48], samples) };
+            let settings = ResolvedSettings { depth, ..by(tracer, [48, 48], samples) };
             picture(&world, &camera, &settings)
         };
         let (found, truly) = (of(TracerKind::Irradiance, 64), of(TracerKind::Path, 512));
@@ -183,14 +183,31 @@ fn records_and_paths_agree_among_gloss_mirrors_and_glass() {
 #[test]
 fn records_leave_the_same_picture_on_any_number_of_threads_and_by_any_tree() {
     let of = |threads, accelerator| {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        pool.install(|| {
-            let options = WorldOptions { accelerator, ..Default::default() };
-            let (world, _) = World::new(furniture(), &options, &DiskLoader);
-            picture(&world, &into_the_room(), &records([32, 24], 4)).pixels
-        })
+        let options = WorldOptions { accelerator, ..Default::default() };
+        let (world, _) = World::new(furniture(), &options, &DiskLoader);
+        let settings = ResolvedSettings { threads: Some(threads), ..records([32, 24], 4) };
+        picture(&world, &into_the_room(), &settings).pixels
     };
     let one = of(1, Accelerator::Bvh);
     assert!([2, 3, 8].into_iter().all(|threads| of(threads, Accelerator::Bvh) == one));
     assert!([Accelerator::KdTree, Accelerator::None].into_iter().all(|tree| of(2, tree) == one));
+}
+
+#[test]
+fn records_are_made_on_as_many_threads_as_asked_for_and_no_more_once_called_off() {
+    let world = world(furniture());
+    for threads in [1, 3] {
+        let settings = ResolvedSettings { threads: Some(threads), ..records([32, 24], 4) };
+        let of = |most| watched(&settings, &world, &into_the_room(), most).told.into_inner().unwrap();
+        let told = of(usize::MAX);
+        assert!(told.iter().all(|&(done, total, on)| done <= total && on == threads));
+        assert!(
+            told.iter().filter(|(done, total, _)| 5 * done < *total).count() > 1,
+            "from the first turn on"
+        );
+        assert!(told.last().is_some_and(|(done, total, _)| done == total), "to the last");
+        for most in [1, 2, told.len() - 1] {
+            assert_eq!(of(most), told[..most]);
+        }
+    }
 }

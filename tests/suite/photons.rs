@@ -13,7 +13,8 @@ const Y: DVec3 = DVec3::Y;
 const Z: DVec3 = DVec3::Z;
 
 fn photons(samples: u32, seed: u64) -> ResolvedSettings {
-    ResolvedSettings { tracer: TracerKind::Photon, depth: u32::MAX, samples, seed, ..settings([1, 1]) }
+    let (tracer, depth) = (TracerKind::Photon, u32::MAX);
+    ResolvedSettings { tracer, depth, samples, seed, threads: None, ..settings([1, 1]) }
 }
 
 /// The mean of what is seen from a point of some others, by maps of three seeds.
@@ -113,20 +114,35 @@ fn photons_and_paths_agree_where_glass_gathers_the_light_of_a_lamp() {
 fn photons_leave_the_same_picture_on_any_number_of_threads() {
     let world = under_glass();
     let of = |threads| {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        pool.install(|| {
-            let tracer = tracer_from(&photons(16, 1), &world, 2.5 * X + 0.9 * Y, DVec3::ZERO);
-            let see = |i: u32| {
-                let direction =
-                    (DVec3::new(f64::from(i) / 64.0 - 0.5, 0.0, 0.1) - 0.9 * Y - 2.5 * X).normalize();
-                let ray =
-                    Ray { origin: 2.5 * X + 0.9 * Y, direction, t_max: f64::INFINITY, kind: RayKind::Camera };
-                tracer.radiance(&world, ray, &mut Sampler::new(1, i, 0, 0))
-            };
-            (0..64).map(see).collect::<Vec<Rgb>>()
-        })
+        let settings = ResolvedSettings { threads: Some(threads), ..photons(16, 1) };
+        let tracer = tracer_from(&settings, &world, 2.5 * X + 0.9 * Y, DVec3::ZERO);
+        let see = |i: u32| {
+            let direction = (DVec3::new(f64::from(i) / 64.0 - 0.5, 0.0, 0.1) - 0.9 * Y - 2.5 * X).normalize();
+            let ray =
+                Ray { origin: 2.5 * X + 0.9 * Y, direction, t_max: f64::INFINITY, kind: RayKind::Camera };
+            tracer.radiance(&world, ray, &mut Sampler::new(1, i, 0, 0))
+        };
+        (0..64).map(see).collect::<Vec<Rgb>>()
     };
     let one = of(1);
     assert!(one.iter().any(|c| c.x > 0.5), "the caustic is seen");
     assert!([2, 3, 8].into_iter().all(|threads| of(threads) == one));
+}
+
+#[test]
+fn photons_are_shot_on_as_many_threads_as_asked_for_and_no_more_once_called_off() {
+    let (world, camera) = (under_glass(), camera(2.5 * X + 0.9 * Y, DVec3::ZERO, 40.0));
+    for threads in [1, 3] {
+        let settings = ResolvedSettings { threads: Some(threads), ..photons(4, 1) };
+        let of = |most| {
+            let Watcher { phases, told, .. } = watched(&settings, &world, &camera, most);
+            (phases.into_inner().unwrap(), told.into_inner().unwrap())
+        };
+        let (phases, told) = of(usize::MAX);
+        assert_eq!(phases, ["photons", "caustics"]);
+        assert!(told.iter().all(|&(done, total, on)| 0 < done && done <= total && on == threads));
+        assert_eq!(told.iter().filter(|(done, total, _)| done == total).count(), 2, "both to their end");
+        assert_eq!(of(1), (vec!["photons"], told[..1].to_vec()));
+        assert_eq!(of(3), (phases, told[..3].to_vec()));
+    }
 }

@@ -210,7 +210,7 @@ fn depends_on_nothing_but_the_scene(tracer: TracerKind) {
     let world = world(still_life(1.0));
     let mut settings = ResolvedSettings { samples: 4, tracer, ..settings([70, 50]) };
     let view = View::new(&still_camera(1.0), settings.size).unwrap();
-    let tracer = ogee::render::tracer(tracer, &world, &view, &settings);
+    let tracer = prepared(tracer, &world, &view, &settings);
     let mut expected = None;
     for threads in [Some(1), Some(2), Some(3), Some(8), None] {
         for tile in [7, 16, 32] {
@@ -239,7 +239,7 @@ fn passes_come_to_the_same(tracer: TracerKind) {
     let world = world(still_life(1.0));
     let most = ResolvedSettings { samples: u32::MAX, tracer, threads: Some(2), ..settings([40, 30]) };
     let view = View::new(&still_camera(1.0), most.size).unwrap();
-    let made = ogee::render::tracer(tracer, &world, &view, &most);
+    let made = prepared(tracer, &world, &view, &most);
     let cancel = AtomicBool::new(false);
     let whole = Picture { world: &world, view: &view, tracer: &*made, settings: &most };
     let mut passes = Passes::new(whole);
@@ -414,7 +414,7 @@ fn a_cancelled_picture_comes_back_as_far_as_it_is() {
     let world = world(still_life(1.0));
     let settings = settings([128, 128]);
     let view = View::new(&still_camera(1.0), settings.size).unwrap();
-    let tracer = ogee::render::tracer(TracerKind::Whitted, &world, &view, &settings);
+    let tracer = prepared(TracerKind::Whitted, &world, &view, &settings);
     let cancel = AtomicBool::new(false);
     let progress = Impatient(&cancel, AtomicUsize::new(0));
     let picture = Picture { world: &world, view: &view, tracer: &*tracer, settings: &settings };

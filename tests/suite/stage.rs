@@ -8,13 +8,13 @@ use ogee::render::camera::View;
 use ogee::render::film::Film;
 use ogee::render::sampler::Sampler;
 use ogee::render::settings::ResolvedSettings;
-use ogee::render::tiles::{Picture, render};
+use ogee::render::tiles::{Picture, Progress, Watch, render};
 use ogee::render::{Tracer, tracer};
 use ogee::scene::assets::DiskLoader;
 use ogee::scene::*;
 use ogee::world::{Ray, RayKind, World, WorldOptions};
-use std::sync::Arc;
-use std::sync::atomic::AtomicBool;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex};
 
 /// Nowhere in particular.
 pub const SPAN: Span = Span { source: SourceId(0), start: 0, end: 0 };
@@ -164,7 +164,7 @@ pub fn camera(eye: DVec3, look_at: DVec3, fov: f64) -> Camera {
 /// A picture by the settings' own tracer.
 pub fn picture(world: &World, camera: &Camera, settings: &ResolvedSettings) -> Film {
     let view = View::new(camera, settings.size).expect("a camera that sees");
-    let tracer = tracer(settings.tracer, world, &view, settings);
+    let tracer = prepared(settings.tracer, world, &view, settings);
     picture_by(&*tracer, world, camera, settings)
 }
 
@@ -182,7 +182,51 @@ pub fn tracer_from(
     toward: DVec3,
 ) -> Box<dyn Tracer> {
     let view = View::new(&camera(origin, toward, 40.0), settings.size).expect("a camera that sees");
-    tracer(settings.tracer, world, &view, settings)
+    prepared(settings.tracer, world, &view, settings)
+}
+
+/// A tracer that nobody watches being made.
+pub fn prepared(
+    kind: TracerKind,
+    world: &World,
+    view: &View,
+    settings: &ResolvedSettings,
+) -> Box<dyn Tracer> {
+    let watch = Watch { progress: &(), cancel: &AtomicBool::new(false) };
+    tracer(kind, world, view, settings, watch).expect("nobody calls it off")
+}
+
+/// Who looks on, notes what is told, and calls the work off after so many tellings.
+#[derive(Default)]
+pub struct Watcher {
+    pub most: usize,
+    pub cancel: AtomicBool,
+    /// Names of phases.
+    pub phases: Mutex<Vec<&'static str>>,
+    /// Parts done, of how many, on how many threads.
+    pub told: Mutex<Vec<(usize, usize, usize)>>,
+}
+
+impl Progress for Watcher {
+    fn phase(&self, name: &'static str) {
+        self.phases.lock().unwrap().push(name);
+    }
+
+    fn tiles(&self, done: usize, total: usize) {
+        let mut told = self.told.lock().unwrap();
+        told.push((done, total, rayon::current_num_threads()));
+        self.cancel.fetch_or(told.len() >= self.most, Ordering::Relaxed);
+    }
+}
+
+/// What is told while a tracer is made that is called off after `most` tellings; it must be none then, and one otherwise.
+pub fn watched(settings: &ResolvedSettings, world: &World, camera: &Camera, most: usize) -> Watcher {
+    let view = View::new(camera, settings.size).expect("a camera that sees");
+    let watcher = Watcher { most, ..Watcher::default() };
+    let watch = Watch { progress: &watcher, cancel: &watcher.cancel };
+    let made = tracer(settings.tracer, world, &view, settings, watch);
+    assert_eq!(made.is_none(), watcher.cancel.load(Ordering::Relaxed));
+    watcher
 }
 
 /// What whitted sees along one ray, the mean of some camera samples, and the sampler of the last.

@@ -48,6 +48,7 @@ pub fn denoised(
     progress: &dyn Progress,
     cancel: &AtomicBool,
 ) -> Option<Vec<Rgb>> {
+    progress.phase("noise");
     let planes = Planes::new(film);
     let made = Band::all(film.crop.height as usize).map(|band| (band, Mutex::new(None)));
     let bands: Vec<(Band, Mutex<Option<Vec<Rgb>>>)> = made.collect();

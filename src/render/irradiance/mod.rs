@@ -18,6 +18,7 @@ mod record;
 use super::camera::View;
 use super::path::{Matt, Path};
 use super::settings::ResolvedSettings;
+use super::tiles::{Watch, on_threads};
 use crate::scene::Rgb;
 use crate::world::bsdf::Bsdf;
 use crate::world::{Footprint, Hit, Ray, RayKind, World};
@@ -48,8 +49,14 @@ const PIXELS: [f64; 2] = [4.0, 64.0];
 const LIFTED: f64 = 1.0 / 64.0;
 
 impl Records {
-    /// The records that a picture needs. Takes all threads there are, which leaves no trace in them.
-    pub fn new(world: &World, path: &Path, view: &View, settings: &ResolvedSettings) -> Records {
+    /// The records that a picture needs. Threads leave no trace in them. None where the work is called off.
+    pub fn new(
+        world: &World,
+        path: &Path,
+        view: &View,
+        settings: &ResolvedSettings,
+        watch: Watch<'_>,
+    ) -> Option<Records> {
         // Noise falls as the root of the samples, and the error of what is interpolated about as the square of its reach.
         let error = ERROR * (64.0 / f64::from(settings.samples)).sqrt().sqrt();
         let mut records = Records {
@@ -59,8 +66,10 @@ impl Records {
             footprint: view.footprint(),
             has_end: settings.depth < u32::MAX,
         };
-        prepass::fill(&mut records, prepass::Prepass { world, path, view, settings });
-        records
+        let prepass = prepass::Prepass { world, path, view, settings, watch };
+        watch.progress.phase("records");
+        on_threads(settings.threads, || prepass::fill(&mut records, prepass))?;
+        Some(records)
     }
 
     /// The irradiance of a place by light from other matt surfaces. None where no record holds.

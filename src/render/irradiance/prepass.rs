@@ -9,6 +9,7 @@ use crate::render::camera::View;
 use crate::render::path::{Matt, Path};
 use crate::render::sampler::Sampler;
 use crate::render::settings::ResolvedSettings;
+use crate::render::tiles::Watch;
 use crate::scene::Rgb;
 use crate::world::World;
 use crate::world::light::{frame, to_frame};
@@ -27,6 +28,8 @@ pub struct Prepass<'a> {
     pub view: &'a View,
     /// With what.
     pub settings: &'a ResolvedSettings,
+    /// Who looks on.
+    pub watch: Watch<'a>,
 }
 
 /// A pixel that needs a record, and what it shows.
@@ -53,8 +56,8 @@ const FEW: usize = 1 << 10;
 /// Bits of the row of random numbers that no pixel has.
 const ROWS: [u32; 2] = [1 << 30, 1 << 31];
 
-/// Makes all records of a picture.
-pub fn fill(records: &mut Records, prepass: Prepass<'_>) {
+/// Makes all records of a picture, each turn an equal part of the work. None where that is called off.
+pub fn fill(records: &mut Records, prepass: Prepass<'_>) -> Option<()> {
     let [width, height] = prepass.settings.size;
     for (turn, &step) in STEPS.iter().enumerate() {
         let coarser = turn.checked_sub(1).map(|before| STEPS[before]);
@@ -62,18 +65,34 @@ pub fn fill(records: &mut Records, prepass: Prepass<'_>) {
         let rows = (0..height).step_by(step as usize);
         let pixels = rows.flat_map(|y| (0..width).step_by(step as usize).map(move |x| [x, y]));
         let pixels: Vec<[u32; 2]> = pixels.filter(|&[x, y]| is_new(x, y)).collect();
-        pixels.chunks(BAND).for_each(|band| prepass.cover(records, band, step * SQUARE));
+        for (i, band) in pixels.chunks(BAND).enumerate() {
+            let told = |done: usize| {
+                let done = turn * pixels.len() + i * BAND + done;
+                prepass.watch.progress.tiles(done, STEPS.len() * pixels.len());
+            };
+            prepass.cover(records, band, step * SQUARE, &told)?;
+        }
     }
+    Some(())
 }
 
 impl<'a> Prepass<'a> {
-    /// Makes records until every one of these pixels has enough, or there are as many as there may be.
-    fn cover(&self, records: &mut Records, pixels: &[[u32; 2]], square: u32) {
+    /// Makes records until every one of these pixels has enough, or there are as many as there may be; tells how many are done. None
+    /// where that is called off.
+    fn cover(
+        &self,
+        records: &mut Records,
+        pixels: &[[u32; 2]],
+        square: u32,
+        told: &dyn Fn(usize),
+    ) -> Option<()> {
         let [width, height] = self.settings.size;
         let most = (width as usize * height as usize / RAYS as usize).max(FEW);
         let mut lacks: Vec<Lack<'_>> =
             pixels.par_iter().filter_map(|&pixel| self.lack(records, pixel)).collect();
         while !lacks.is_empty() && records.records.len() < most {
+            told(pixels.len() - lacks.len());
+            self.watch.go_on()?;
             let mut squares = HashSet::new();
             let (first, others): (Vec<_>, Vec<_>) =
                 lacks.into_iter().partition(|lack| squares.insert(lack.pixel.map(|n| n / square)));
@@ -82,10 +101,13 @@ impl<'a> Prepass<'a> {
             let lacking = |lack: &Lack<'_>| !records.is_enough(self.world, &records.place_of(&lack.matt));
             lacks = others.into_par_iter().filter(lacking).collect();
         }
+        told(pixels.len());
+        self.watch.go_on()
     }
 
-    /// What a pixel shows, if no record is enough there.
+    /// What a pixel shows, if no record is enough there and the work goes on.
     fn lack(&self, records: &Records, pixel: [u32; 2]) -> Option<Lack<'a>> {
+        self.watch.go_on()?;
         let [x, y] = pixel;
         let centre = DVec2::new(f64::from(x), f64::from(y)) + 0.5;
         let ray = self.view.ray(centre, DVec2::ZERO)?;
@@ -96,14 +118,15 @@ impl<'a> Prepass<'a> {
     }
 
     /// The light gathered at what a pixel shows. The bands of cells are seen by as many rays as chance needs for the slope not to be
-    /// noise: the difference of two cells has the noise of each, however narrow they are.
+    /// noise: the difference of two cells has the noise of each, however narrow they are. None where a record would tell nothing, or the
+    /// work is called off.
     fn record(&self, records: &Records, lack: &Lack<'_>) -> Option<Record> {
         let matt = &lack.matt;
         let rays = RAYS.saturating_mul(self.settings.samples);
         let hemisphere = Hemisphere::of(2 * rays.isqrt());
         let each = (rays / hemisphere.cells()).max(1).next_power_of_two();
-        let cells = 0..hemisphere.cells();
-        let seen: Vec<Seen> = cells.map(|cell| self.seen(lack, hemisphere, cell, each)).collect();
+        let seen = |cell| self.watch.go_on().map(|()| self.seen(lack, hemisphere, cell, each));
+        let seen: Vec<Seen> = (0..hemisphere.cells()).map(seen).collect::<Option<_>>()?;
         let place = records.place_of(matt);
         let gathered = hemisphere.gathered(&seen, frame(place.normal));
         Record::new(place, gathered, records.limits(place.point))

@@ -2,6 +2,7 @@
 //! farthest of which only says how large the disc is. With k − 1 in the sum the estimate is right on average where photons are even
 //! (Jensen, *Realistic Image Synthesis Using Photon Mapping*, 2001, §7; the correction after Mack & Rosenblatt, 1979).
 
+use crate::render::tiles::Watch;
 use crate::scene::Rgb;
 use glam::{DVec3, Vec3};
 use std::cell::RefCell;
@@ -74,10 +75,12 @@ thread_local! {
 }
 
 impl Map {
-    /// A tree of photons. The same list gives the same tree on any number of threads.
-    pub fn new(mut photons: Vec<Photon>) -> Map {
-        build(&mut photons);
-        Map { photons }
+    /// A tree of photons. The same list gives the same tree on any number of threads. None where the work is called
+    /// off.
+    pub fn new(mut photons: Vec<Photon>, watch: Watch<'_>) -> Option<Map> {
+        build(&mut photons, watch);
+        watch.go_on()?;
+        Some(Map { photons })
     }
 
     /// The middle one of the distances within which a photon of the map has `most` others, by a few hundred of them. None where
@@ -125,9 +128,9 @@ impl Map {
     }
 }
 
-/// Cuts the longest side at the middle photon, and both halves in turn.
-fn build(photons: &mut [Photon]) {
-    if photons.len() < 2 {
+/// Cuts the longest side at the middle photon, and both halves in turn, unless that is called off.
+fn build(photons: &mut [Photon], watch: Watch<'_>) {
+    if photons.len() < 2 || watch.is_over() {
         return;
     }
     let axis = longest_side(photons);
@@ -137,10 +140,10 @@ fn build(photons: &mut [Photon]) {
     let (low, high) = photons.split_at_mut(middle);
     let high = &mut high[1..];
     if low.len() < SERIAL {
-        build(low);
-        build(high);
+        build(low, watch);
+        build(high, watch);
     } else {
-        rayon::join(|| build(low), || build(high));
+        rayon::join(|| build(low, watch), || build(high, watch));
     }
 }
 
@@ -250,6 +253,7 @@ fn sink(heap: &mut [(f64, u32)]) {
 mod tests {
     use super::*;
     use crate::render::sampler::mix;
+    use std::sync::atomic::AtomicBool;
 
     fn unit(i: u64) -> f64 {
         (mix(i) >> 11) as f64 / (1u64 << 53) as f64
@@ -261,13 +265,18 @@ mod tests {
         (0..n).map(|i| Photon::new(at(i), DVec3::Z, DVec3::Z, Rgb::ONE, 1)).collect()
     }
 
+    fn map_of(n: u64) -> Map {
+        let watch = Watch { progress: &(), cancel: &AtomicBool::new(false) };
+        Map::new(even(n), watch).expect("nobody calls it off")
+    }
+
     fn query(point: DVec3, most: usize) -> Query {
         Query { point, normal: DVec3::Z, radius: 1.0, most, segments: u32::MAX }
     }
 
     #[test]
     fn the_nearest_are_those_of_all() {
-        let (photons, map) = (even(2000), Map::new(even(2000)));
+        let (photons, map) = (even(2000), map_of(2000));
         for i in 0..200 {
             let point = DVec3::new(unit(9000 + i), unit(9500 + i), 0.01);
             let mut all: Vec<f64> = photons.iter().map(|p| p.position.distance_squared(point)).collect();
@@ -280,7 +289,7 @@ mod tests {
     #[test]
     fn even_light_is_estimated_without_bias() {
         let (n, k) = (200_000, 8);
-        let map = Map::new(even(n));
+        let map = map_of(n);
         let points = 4000u64;
         let of = |i| {
             let at = DVec3::new(0.1 + 0.8 * unit(1_000_000 + i), 0.1 + 0.8 * unit(2_000_000 + i), 0.0);
@@ -293,7 +302,7 @@ mod tests {
 
     #[test]
     fn surfaces_that_face_elsewhere_and_longer_ways_do_not_count() {
-        let map = Map::new(even(100));
+        let map = map_of(100);
         let at = DVec3::new(0.5, 0.5, 0.0);
         let turned = Query { normal: -DVec3::Z, ..query(at, 4) };
         assert!(map.gather(&turned, false, |_| Rgb::ONE).is_none());
@@ -303,7 +312,7 @@ mod tests {
 
     #[test]
     fn few_photons_are_told_from_many() {
-        let map = Map::new(even(3));
+        let map = map_of(3);
         let wide = Query { radius: 2.0, ..query(DVec3::new(0.5, 0.5, 0.0), 8) };
         assert!(map.gather(&wide, false, |_| Rgb::ONE).is_none());
         let sparse = map.gather(&wide, true, |_| Rgb::ONE).unwrap().x;

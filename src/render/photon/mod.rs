@@ -15,6 +15,7 @@ mod map;
 mod shoot;
 
 use super::settings::ResolvedSettings;
+use super::tiles::{Watch, on_threads};
 use crate::scene::Rgb;
 use crate::world::bsdf::Bsdf;
 use crate::world::light::{Ball, Choice, Lights};
@@ -39,6 +40,9 @@ const MOST: [usize; 2] = [16, 64];
 /// Paths from the lamps for each sample of a pixel, and at most: of all light, and of caustics, most of which end at once.
 const PATHS: [[u32; 2]; 2] = [[1 << 12, 1 << 20], [1 << 15, 1 << 22]];
 
+/// What is shot, for who looks on.
+const PHASES: [&str; 2] = ["photons", "caustics"];
+
 /// Photons kept at most.
 const ROOM: [usize; 2] = [1 << 22, 1 << 21];
 
@@ -50,21 +54,29 @@ const REACH: f64 = 4.0;
 const CORNER: f64 = 2.0;
 
 impl Maps {
-    /// Shoots the photons of a world. Takes all threads there are, which leaves no trace in the maps.
-    pub fn new(world: &World, lights: &Lights, choice: &Choice, settings: &ResolvedSettings) -> Maps {
+    /// Shoots the photons of a world. Threads leave no trace in the maps. None where the work is called off.
+    pub fn new(
+        world: &World,
+        lights: &Lights,
+        choice: &Choice,
+        settings: &ResolvedSettings,
+        watch: Watch<'_>,
+    ) -> Option<Maps> {
         let ball = Ball::around(world);
         let ResolvedSettings { depth, seed, samples, .. } = *settings;
-        let shooting = Shooting { world, lights, choice, ball, depth, seed, caustics: false };
+        let shooting = Shooting { world, lights, choice, ball, depth, seed, caustics: false, watch };
         let map = |i: usize, shooting: Shooting<'_>| {
             let [each, most] = PATHS[i];
-            Map::new(shooting.photons(samples.saturating_mul(each).min(most), ROOM[i]))
+            watch.progress.phase(PHASES[i]);
+            let photons = || shooting.photons(samples.saturating_mul(each).min(most), ROOM[i]);
+            on_threads(settings.threads, || Map::new(photons()?, watch))
         };
-        let global = map(0, shooting);
+        let global = map(0, shooting)?;
         let bends = world.materials().iter().any(|material| bends(material));
-        let caustics = if bends { map(1, Shooting { caustics: true, ..shooting }) } else { Map::default() };
+        let caustics = if bends { map(1, Shooting { caustics: true, ..shooting })? } else { Map::default() };
         let reach = |map: &Map, most| REACH * map.spacing(most).unwrap_or(0.0);
         let radii = [reach(&global, MOST[0]), reach(&caustics, MOST[1])];
-        Maps { global, caustics, radii, lit: lights.from_afar().then_some(ball), depth }
+        Some(Maps { global, caustics, radii, lit: lights.from_afar().then_some(ball), depth })
     }
 
     /// What a surface sends on of all light, at the end of a segment that begins at a matt surface. None where photons cannot

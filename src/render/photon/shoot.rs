@@ -4,6 +4,7 @@ use super::map::Photon;
 use crate::render::medium::Inside;
 use crate::render::path::survival;
 use crate::render::sampler::Sampler;
+use crate::render::tiles::Watch;
 use crate::scene::Rgb;
 use crate::world::bsdf::Bsdf;
 use crate::world::light::{Ball, Choice, Light, Lights};
@@ -28,6 +29,8 @@ pub struct Shooting<'a> {
     pub seed: u64,
     /// Only light that came by mirrors and glass alone, and what it meets first after them.
     pub caustics: bool,
+    /// Who looks on.
+    pub watch: Watch<'a>,
 }
 
 /// A photon under way.
@@ -50,8 +53,9 @@ const CHUNK: u32 = 1 << 8;
 const NO_ROW: u32 = u32::MAX;
 
 impl Shooting<'_> {
-    /// The photons of so many paths, or of fewer where there are as many photons as can be kept.
-    pub fn photons(&self, paths: u32, most: usize) -> Vec<Photon> {
+    /// The photons of so many paths, or of fewer where there are as many photons as can be kept. None where
+    /// the work is called off.
+    pub fn photons(&self, paths: u32, most: usize) -> Option<Vec<Photon>> {
         let mut photons = Vec::new();
         let mut shot = 0;
         while shot < paths && photons.len() < most {
@@ -61,15 +65,17 @@ impl Shooting<'_> {
             let found: Vec<Vec<Photon>> = chunks.par_iter().map(of).collect();
             photons.extend(found.into_iter().flatten());
             shot += batch;
+            self.watch.progress.tiles(shot as usize, paths as usize);
+            self.watch.go_on()?;
         }
         let share = 1.0 / shot.max(1) as f32;
         photons.iter_mut().for_each(|photon| photon.power *= share);
-        photons
+        Some(photons)
     }
 
     fn chunk(&self, first: u32, end: u32) -> Vec<Photon> {
         let mut photons = Vec::new();
-        for path in first..end {
+        for path in (first..end).take_while(|_| !self.watch.is_over()) {
             // What a surface's function leaves undefined is said by the camera's rays, if they see it.
             let _ = self.shoot(path, &mut photons);
         }

@@ -11,16 +11,16 @@ use crate::interrupt;
 use crate::speech::{Ended, Exit, Failure, data, show, tell, tell_failure};
 use bar::Bar;
 use ogee::diag::Diagnostic;
-use ogee::render::adaptive;
 use ogee::render::film::Film;
 use ogee::render::output::Format;
 use ogee::render::passes::{self, Passes};
 use ogee::render::settings::ResolvedSettings;
+use ogee::render::{Tracer, adaptive};
 use ogee::scene::{RenderSettings, SamplerKind, TracerKind};
 use ogee::session::Evaluated;
 use ogee::session::animation::{Animation, Asked};
 use ogee::session::picture::{self, Job, Prepared};
-use std::sync::{Arc, Mutex};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use std::time::Instant;
 use target::{Form, Saving, Target};
 
@@ -77,6 +77,10 @@ fn still(
     let film =
         seconds.render.measure(|| render(args, &prepared, &bar, move |film| rescue(&for_rescue, film)));
     bar.end();
+    let Some(film) = film else {
+        tell(not_begun(&saving));
+        return Ok(Exit::Interrupted);
+    };
     let faults = picture::faults(&film);
     show(&faults, animation.sources());
     seconds.write.measure(|| saving.save(&film))?;
@@ -96,8 +100,14 @@ fn is_made(film: &Film, settings: &ResolvedSettings) -> bool {
     film.is_complete() && film.denoised == settings.denoise
 }
 
-/// Saves a picture whose rendering does not come to an end.
-fn rescue(saving: &Saving, film: &Film) {
+/// What is said of a picture of which there is nothing to save.
+fn not_begun(saving: &Saving) -> String {
+    format!("{}  not written: interrupted before its first pixel", saving.shown())
+}
+
+/// Saves a picture whose rendering does not come to an end, if it has begun.
+fn rescue(saving: &Saving, film: Option<&Film>) {
+    let Some(film) = film else { return tell(not_begun(saving)) };
     match saving.save(film) {
         Ok(()) => tell(format!("{}  as far as it was: a ray does not come back", saving.shown())),
         Err(failure) => tell_failure(&failure),
@@ -154,28 +164,38 @@ fn most_samples(args: &Render) -> Option<u32> {
     args.error.map(|_| adaptive::MOST).or(args.budget.map(|_| u32::MAX))
 }
 
-/// Renders; `rescue` is what is done with the picture so far where a ray does not come back.
+/// Renders; `rescue` is what is done with the picture so far where a ray does not come back. There is none before all is made that
+/// the tracer makes beforehand.
 fn render(
     args: &Render,
     prepared: &Prepared,
     bar: &Bar,
-    rescue: impl FnOnce(&Film) + Send + 'static,
-) -> Film {
-    let film = Arc::new(Mutex::new(prepared.bare_film()));
+    rescue: impl FnOnce(Option<&Film>) + Send + 'static,
+) -> Option<Film> {
+    let film = Arc::new(OnceLock::<Mutex<Film>>::new());
     let rescue = {
         let film = Arc::clone(&film);
-        move || rescue(&film.lock().unwrap_or_else(|poisoned| poisoned.into_inner()))
+        move || rescue(film.get().map(|film| film.lock().unwrap_or_else(PoisonError::into_inner)).as_deref())
     };
-    let passes = args.budget.and_then(|seconds| Some((seconds, prepared.passes()?)));
-    interrupt::while_rendering(rescue, || match passes {
-        Some((seconds, passes)) => {
-            within(seconds, passes, prepared.settings.samples, &film, bar);
-            prepared.filter(&film, bar, &interrupt::CANCEL);
-        }
-        None => prepared.render_onto(&film, bar, &interrupt::CANCEL),
+    interrupt::while_rendering(rescue, || {
+        let tracer = prepared.tracer(bar, &interrupt::CANCEL)?;
+        let film = film.get_or_init(|| Mutex::new(prepared.bare_film()));
+        expose(args, prepared, &*tracer, film, bar);
+        Some(())
     });
-    let film = Arc::into_inner(film).expect("who would have saved it is gone");
-    film.into_inner().unwrap_or_else(|poisoned| poisoned.into_inner())
+    let film = Arc::into_inner(film).expect("who would have saved it is gone").into_inner()?;
+    Some(film.into_inner().unwrap_or_else(PoisonError::into_inner))
+}
+
+/// Renders onto a bare film, in passes where there is a budget.
+fn expose(args: &Render, prepared: &Prepared, tracer: &dyn Tracer, film: &Mutex<Film>, bar: &Bar) {
+    match args.budget.and_then(|seconds| Some((seconds, prepared.passes(tracer)?))) {
+        Some((seconds, passes)) => {
+            within(seconds, passes, prepared.settings.samples, film, bar);
+            prepared.filter(film, bar, &interrupt::CANCEL);
+        }
+        None => prepared.render_onto(film, tracer, bar, &interrupt::CANCEL),
+    }
 }
 
 /// Takes samples for so many seconds, at most `most` a pixel. The first pass is made in any case; a pass that is interrupted leaves the one before.
@@ -185,7 +205,7 @@ fn within(budget: f64, mut passes: Passes<'_>, most: u32, film: &Mutex<Film>, ba
     while let Some(n) = to {
         let is_whole = passes.advance(n, bar, &interrupt::CANCEL);
         if is_whole || n == passes::FIRST {
-            *film.lock().unwrap_or_else(|poisoned| poisoned.into_inner()) = passes.film();
+            *film.lock().unwrap_or_else(PoisonError::into_inner) = passes.film();
         }
         let used = start.elapsed().as_secs_f64();
         to = passes::next(n, used, budget - used, most).filter(|_| is_whole);

@@ -64,7 +64,7 @@ fn of_scene(args: &Tracers, path: &Path) -> Result<Result<Vec<TracerRow>, Exit>,
         }
         show(&found, animation.sources());
         let Some(prepared) = prepared else { return Ok(Err(Exit::Scene)) };
-        match measured(args, path, Bench { prepared: Some(prepared), written, overrides: job.overrides })? {
+        match measured(args, path, Bench { prepared, written, overrides: job.overrides })? {
             Some(rows) => Ok(Ok(rows)),
             None => Ok(Err(Exit::Interrupted)),
         }
@@ -138,8 +138,7 @@ struct Interrupted;
 
 /// A scene that is rendered again and again.
 struct Bench {
-    /// Taken while a tracer is made anew.
-    prepared: Option<Prepared>,
+    prepared: Prepared,
     /// What the scene says of its picture, and what comes before that.
     written: RenderSettings,
     overrides: RenderSettings,
@@ -147,7 +146,7 @@ struct Bench {
 
 impl Bench {
     fn settings(&self) -> &ResolvedSettings {
-        &self.prepared.as_ref().expect("it is put back each time").settings
+        &self.prepared.settings
     }
 
     /// Renders once; its time is that of the tracer, with what it makes beforehand.
@@ -157,7 +156,6 @@ impl Bench {
     }
 
     fn film(&mut self, ask: &Ask, threads: Option<usize>) -> Result<(Film, f64), Interrupted> {
-        let before = *self.settings();
         let asked = RenderSettings {
             tracer: Some(ask.variant.tracer),
             samples: Some(ask.samples),
@@ -166,12 +164,11 @@ impl Bench {
             ..self.overrides.clone()
         };
         let settings = ResolvedSettings { threads, ..ResolvedSettings::new(&self.written, &asked) };
+        let before = std::mem::replace(&mut self.prepared.settings, settings);
         let started = Instant::now();
-        let mut prepared = self.prepared.take().expect("it is put back each time").retraced(settings);
-        let film = prepared.render(&(), &interrupt::CANCEL);
+        let film = self.prepared.render(&(), &interrupt::CANCEL);
         let seconds = started.elapsed().as_secs_f64();
-        prepared.settings = before;
-        self.prepared = Some(prepared);
+        self.prepared.settings = before;
         if film.is_complete() { Ok((film, seconds)) } else { Err(Interrupted) }
     }
 

@@ -20,8 +20,9 @@ impl Bar {
         let bar = ProgressBar::with_draw_target(Some(pictures * STEPS), ProgressDrawTarget::hidden());
         if std::io::stderr().is_terminal() {
             bar.set_draw_target(ProgressDrawTarget::stderr_with_hz(10));
-            let style =
-                ProgressStyle::with_template("{bar:40} {percent:>3} %  {msg}{elapsed} gone, {eta} left");
+            let style = ProgressStyle::with_template(
+                "{bar:40} {percent:>3} %  {msg}{prefix}{elapsed} gone, {eta} left",
+            );
             bar.set_style(style.expect("the template is well formed"));
         }
         Bar { bar, done: AtomicU64::new(0) }
@@ -49,6 +50,10 @@ impl Bar {
 }
 
 impl Progress for Bar {
+    fn phase(&self, name: &'static str) {
+        self.bar.set_prefix(if name.is_empty() { String::new() } else { format!("{name}  ") });
+    }
+
     fn tiles(&self, done: usize, total: usize) {
         if !self.bar.is_hidden() {
             let here = STEPS * done as u64 / (total as u64).max(1);

@@ -113,9 +113,9 @@ impl Reel<'_, '_> {
         let Some(prepared) = prepared else { return Ok(Some(Exit::Scene)) };
         let left = self.left_undone(frame);
         let film = seconds.render.measure(|| render(self.args, &prepared, &self.bar, left));
-        if !super::is_made(&film, &prepared.settings) {
+        let Some(film) = film.filter(|film| super::is_made(film, &prepared.settings)) else {
             return Ok(Some(Exit::Interrupted));
-        }
+        };
         let faults = picture::faults(&film);
         self.total.faulty |= !faults.is_empty();
         self.say(frame, faults);
@@ -125,12 +125,12 @@ impl Reel<'_, '_> {
     }
 
     /// What is left to do where a ray does not come back.
-    fn left_undone(&self, frame: u32) -> impl FnOnce(&Film) + Send + 'static {
+    fn left_undone(&self, frame: u32) -> impl FnOnce(Option<&Film>) + Send + 'static {
         let movie = match &self.into {
             Into::Files(_) => None,
             Into::Movie(movie) => Some((Arc::clone(movie), self.target.name.given().to_owned())),
         };
-        move |_: &Film| {
+        move |_: Option<&Film>| {
             tell(format!("frame {frame} is left out: a ray does not come back"));
             if let Some((movie, path)) = movie {
                 save_movie(&locked(&movie), &path).unwrap_or_else(|failure| tell_failure(&failure));
