@@ -14,7 +14,7 @@
 //! tell by how much. A neighbourhood's difference is capped pixel by pixel, so that the rim of a lamp does not leave its noise to
 //! all pixels around it; a smaller one is not, so that the lamp does not spill.
 //!
-//! Every pixel is a function of those at most [`REACH`] away, summed in one order: threads change no bit.
+//! Every pixel is a function of those at most `REACH` away, summed in one order: threads change no bit.
 
 mod band;
 mod planes;
