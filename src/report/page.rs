@@ -38,7 +38,7 @@ fn head(machine: &Machine) -> String {
         if machine.commit.is_empty() { String::new() } else { format!(", commit {}", machine.commit) };
     format!(
         "# Speed against error\n\n\
-         `ogee bench kernels --{mode}` measured it, `ogee bench report` wrote this page from [results](results) alone. Version {version}{commit}, {build}, {cpu}, \
+         `ogee bench kernels --{mode}{count}` measured it, `ogee bench report` wrote this page from [results](results) alone. Version {version}{commit}, {build}, {cpu}, \
          {target}; load {load:.1} at the start; seed {seed}.\n\n\
          Every variant answers the same inputs. Errors are against double-double arithmetic, exact rationals or mpmath, as each component's source says; \
          what is missed or made up is counted and never averaged into an error. Times are medians of blocks taken in turn, ± the median \
@@ -48,6 +48,7 @@ fn head(machine: &Machine) -> String {
          In the plots ★ is the default, the line joins what nothing beats in both cost and error, and a hollow mark has wrong answers, however small \
          the error of the rest.\n",
         mode = machine.mode,
+        count = if machine.counter.is_empty() { "" } else { " --count" },
         version = machine.version,
         build = machine.build,
         cpu = machine.cpu,
