@@ -1,6 +1,7 @@
 //! Rays through aggregates and their placements.
 
 use super::aggregate::{Aggregate, Group, Item};
+use super::shape::triangle::Sheared;
 use super::shape::{Csg, LocalRay, Meet, Shape};
 use super::{PrimitiveId, RayKind, World};
 use crate::scene::Hide;
@@ -58,9 +59,16 @@ impl<'w> Query<'w> {
         match aggregate {
             Aggregate::Group(group) => self.visit_group(group, local),
             Aggregate::Mesh(mesh) => {
+                let ray = Sheared::new(&local.ray);
                 let limit = self.limit * local.per_world;
-                mesh.shape.meetings(&local.ray, limit, |part, meet| {
-                    self.offer(PrimitiveId { instance: local.instance, shape: 0, part }, 0, meet, &local);
+                mesh.shape.tree.traverse(local.ray.origin, local.ray.direction, limit, |range, _| {
+                    for position in range {
+                        if let Some(meet) = mesh.shape.meet(position, &ray, self.limit * local.per_world) {
+                            let part = mesh.shape.triangle_at(position);
+                            let id = PrimitiveId { instance: local.instance, shape: 0, part };
+                            self.offer(id, 0, meet, &local);
+                        }
+                    }
                     self.rest(&local)
                 });
             }

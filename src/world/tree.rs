@@ -3,7 +3,6 @@
 #[cfg(test)]
 mod tests;
 
-use super::bvh::Costs;
 use super::{bvh, kdtree};
 use crate::math::Aabb;
 use crate::scene::Accelerator;
@@ -28,20 +27,18 @@ impl Default for Tree {
 impl Tree {
     /// A tree over `count` items, each with its box; see [`bvh::Tree::build`].
     pub fn build(accelerator: Accelerator, count: usize, bounds_of: impl Fn(usize) -> Aabb + Sync) -> Tree {
-        Tree::build_clipped(accelerator, &Costs::SINGLE, count, bounds_of, |_, cell| *cell)
+        Tree::build_clipped(accelerator, count, bounds_of, |_, cell| *cell)
     }
 
-    /// The same where items are not tested one by one, and where `clip` gives a box around what lies of an item in a box: what each
-    /// tree makes use of, see [`bvh::Tree::build_for`] and [`kdtree::Tree::build_clipped`].
+    /// The same where `clip` gives a box around what lies of an item in a box; see [`kdtree::Tree::build_clipped`].
     pub fn build_clipped(
         accelerator: Accelerator,
-        costs: &Costs,
         count: usize,
         bounds_of: impl Fn(usize) -> Aabb + Sync,
         clip: impl Fn(usize, &Aabb) -> Aabb + Sync,
     ) -> Tree {
         match accelerator {
-            Accelerator::Bvh => Tree::Bvh(bvh::Tree::build_for(costs, count, bounds_of)),
+            Accelerator::Bvh => Tree::Bvh(bvh::Tree::build(count, bounds_of)),
             Accelerator::KdTree => Tree::KdTree(kdtree::Tree::build_clipped(count, bounds_of, clip)),
             Accelerator::None => Tree::Bvh(bvh::Tree::list(count, bounds_of)),
         }
@@ -69,14 +66,6 @@ impl Tree {
         match self {
             Tree::Bvh(tree) => tree.is_unbounded(),
             Tree::KdTree(tree) => tree.is_unbounded(),
-        }
-    }
-
-    /// Memory of the nodes, and of what is in the leaves, bytes.
-    pub fn bytes(&self) -> [usize; 2] {
-        match self {
-            Tree::Bvh(tree) => tree.bytes(),
-            Tree::KdTree(tree) => tree.bytes(),
         }
     }
 

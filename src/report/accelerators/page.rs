@@ -30,12 +30,12 @@ fn head(machine: &Machine) -> String {
         "# Trees: what a ray costs\n\n\
          `ogee bench accelerators` measured it, `ogee bench report` wrote this page from [results](results) alone. Version {version}{commit}, {build}, {cpu}, \
          {target}; load {load:.1} at the start.\n\n\
-         All trees stand over the same triangles with the same exact test. `bvh` holds them in packs of four, which propose what is tested exactly; \
-         the others test them one by one. Bytes are for each triangle: the tree's nodes, and what is in its leaves; those of the mesh itself come on top and are the same for all. Rays are on one \
-         thread, in turn, the fastest of several rounds; building takes all threads. Nodes and tests (of triangles, or of packs) are counted, and the same on every machine; the \
+         All trees stand over the same triangles with the same test of each, one by one; scenes test several at once where they can. Bytes are for \
+         each triangle: the tree's nodes, and what is in its leaves; those of the mesh itself come on top and are the same for all. Rays are on one \
+         thread, in turn, the fastest of several rounds; building takes all threads. Nodes and tests are counted, and the same on every machine; the \
          nodes of `bvh` have eight children, those of `kdtree` two, and its leaves count as nodes. Wrong are rays that meet \
          another triangle, at another distance, or are blocked otherwise, than by a test of every triangle: half of them go through edges and corners. \
-         `bvh` is what scenes use, `kdtree` builds what they use where asked to; the others are what they are measured against.\n",
+         `bvh` and `kdtree` are what scenes use; the others are what they are measured against.\n",
         version = machine.version,
         build = machine.build,
         cpu = machine.cpu,

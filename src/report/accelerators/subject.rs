@@ -1,23 +1,18 @@
-//! A mesh under a tree that some builder makes, asked ray by ray. One exact test and one order of ties for all trees.
+//! A mesh under a tree that some builder makes, asked ray by ray. One triangle test and one order of ties for all trees.
 
 use crate::geometry::mesh::Mesh;
 use crate::math::Aabb;
 use crate::scene::Accelerator;
-use crate::world::bvh::{self, Costs};
-use crate::world::kdtree;
-use crate::world::shape::mesh::MeshShape;
+use crate::world::shape::LocalRay;
 use crate::world::shape::triangle::{Sheared, cut::cut};
-use crate::world::shape::{LocalRay, Meet};
 use crate::world::tree::Tree;
+use crate::world::{bvh, kdtree};
 use glam::DVec3;
-use std::sync::Arc;
 
 /// What makes the tree.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Builder {
-    /// The hierarchy of boxes that scenes use, with packs of four triangles in its leaves. A pack is one test.
-    Packs,
-    /// The same over triangles one by one, as the other trees.
+    /// The hierarchy of boxes that scenes use.
     Bvh,
     /// The same, halved by number.
     BvhMedian,
@@ -31,15 +26,14 @@ pub enum Builder {
 
 impl Builder {
     /// All that make a tree.
-    pub const TREES: [Builder; 5] =
-        [Builder::Packs, Builder::Bvh, Builder::BvhMedian, Builder::KdTree, Builder::KdTreeOfBoxes];
+    pub const TREES: [Builder; 4] =
+        [Builder::Bvh, Builder::BvhMedian, Builder::KdTree, Builder::KdTreeOfBoxes];
 
     /// As reports name it.
     pub fn name(self) -> &'static str {
         match self {
-            Builder::Packs => "bvh",
-            Builder::Bvh => "bvh, one by one",
-            Builder::BvhMedian => "bvh, one by one, halves by number",
+            Builder::Bvh => "bvh",
+            Builder::BvhMedian => "bvh, halves by number",
             Builder::KdTree => "kdtree",
             Builder::KdTreeOfBoxes => "kdtree of boxes",
             Builder::List => "none",
@@ -52,7 +46,7 @@ impl Builder {
 pub struct Work {
     /// Nodes visited, leaves of a kd-tree among them.
     pub nodes: u64,
-    /// Triangles tested, or packs of them.
+    /// Triangles tested.
     pub tests: u64,
 }
 
@@ -70,49 +64,40 @@ pub struct Line {
 /// A mesh and its tree.
 pub struct Subject<'m> {
     mesh: &'m Mesh,
-    leaves: Leaves,
-}
-
-/// What is in a tree's leaves.
-enum Leaves {
-    Packs(MeshShape),
-    /// Triangles, in the tree's order.
-    Single(Vec<[u32; 3]>, Tree),
+    /// In the tree's order.
+    triangles: Vec<[u32; 3]>,
+    tree: Tree,
 }
 
 impl<'m> Subject<'m> {
     /// Builds the tree.
     pub fn new(mesh: &'m Mesh, builder: Builder) -> Subject<'m> {
-        if builder == Builder::Packs {
-            let shape = MeshShape::new(Arc::new(mesh.clone()), None, Accelerator::Bvh);
-            return Subject { mesh, leaves: Leaves::Packs(shape) };
-        }
         let n = mesh.triangles.len();
         let corners = |i: usize| mesh.triangles[i].map(|p| mesh.positions[p as usize]);
         let bounds = |i: usize| Aabb::of(corners(i));
         let clip = |i: usize, cell: &Aabb| cut(corners(i), cell);
         let tree = match builder {
-            Builder::Packs | Builder::Bvh => Tree::Bvh(bvh::Tree::build(n, bounds)),
+            Builder::Bvh => Tree::Bvh(bvh::Tree::build(n, bounds)),
             Builder::BvhMedian => Tree::Bvh(bvh::Tree::build_median(n, bounds)),
-            Builder::KdTree => Tree::build_clipped(Accelerator::KdTree, &Costs::SINGLE, n, bounds, clip),
+            Builder::KdTree => Tree::build_clipped(Accelerator::KdTree, n, bounds, clip),
             Builder::KdTreeOfBoxes => Tree::KdTree(kdtree::Tree::build(n, bounds)),
             Builder::List => Tree::Bvh(bvh::Tree::list(n, bounds)),
         };
         let triangles = tree.order().iter().map(|&i| mesh.triangles[i as usize]).collect();
-        Subject { mesh, leaves: Leaves::Single(triangles, tree) }
+        Subject { mesh, triangles, tree }
     }
 
     /// Memory of the nodes and of what is in the leaves, bytes.
     pub fn bytes(&self) -> [usize; 2] {
-        match &self.leaves {
-            Leaves::Packs(shape) => shape.tree_bytes(),
-            Leaves::Single(_, tree) => tree.bytes(),
+        match &self.tree {
+            Tree::Bvh(tree) => tree.bytes(),
+            Tree::KdTree(tree) => tree.bytes(),
         }
     }
 
     /// How often leaves name triangles.
     pub fn references(&self) -> usize {
-        match self.tree() {
+        match &self.tree {
             Tree::Bvh(tree) => tree.order().len(),
             Tree::KdTree(tree) => tree.reference_count(),
         }
@@ -120,63 +105,40 @@ impl<'m> Subject<'m> {
 
     /// How many nodes there are.
     pub fn nodes(&self) -> usize {
-        self.tree().node_count()
-    }
-
-    fn tree(&self) -> &Tree {
-        match &self.leaves {
-            Leaves::Packs(shape) => &shape.tree,
-            Leaves::Single(_, tree) => tree,
-        }
+        self.tree.node_count()
     }
 
     /// The nearest meeting, or any: distance and triangle; of equally near ones the first triangle. None too for a line without direction.
     #[inline]
     pub fn meet(&self, line: &Line, any: bool) -> Option<(f64, u32)> {
-        let mut asked = Asked::new(self.mesh, line, any)?;
-        let (ray, limit) = (asked.ray, asked.limit);
-        match &self.leaves {
-            Leaves::Packs(shape) => shape.meetings(&ray, limit, |triangle, meet| asked.offer(triangle, meet)),
-            Leaves::Single(triangles, tree) => {
-                tree.traverse(ray.origin, ray.direction, limit, |range, _| {
-                    asked.leaf(triangles, tree, range)
-                });
-            }
-        }
+        let mut asked = Asked::new(self, line, any)?;
+        let LocalRay { origin, direction } = asked.ray;
+        self.tree.traverse(origin, direction, asked.limit, |range, _| asked.leaf(range));
         asked.found()
     }
 
     /// What [`Subject::meet`] costs.
     pub fn work(&self, line: &Line, any: bool) -> Work {
-        let Some(mut asked) = Asked::new(self.mesh, line, any) else { return Work::default() };
-        let (ray, limit) = (asked.ray, asked.limit);
-        let (triangles, tree) = match &self.leaves {
-            Leaves::Packs(shape) => {
-                let [nodes, tests] =
-                    shape.meetings_counting(&ray, limit, |triangle, meet| asked.offer(triangle, meet));
-                return Work { nodes, tests };
-            }
-            Leaves::Single(triangles, tree) => (triangles, tree),
-        };
+        let Some(mut asked) = Asked::new(self, line, any) else { return Work::default() };
+        let LocalRay { origin, direction } = asked.ray;
+        let limit = asked.limit;
         let mut work = Work::default();
         let leaf = |range: std::ops::Range<usize>, _: f64| {
             work.tests += range.len() as u64;
-            asked.leaf(triangles, tree, range)
+            asked.leaf(range)
         };
         let mut nodes = 0;
-        match tree {
-            Tree::Bvh(tree) => nodes = tree.traverse_counting(ray.origin, ray.direction, limit, leaf),
-            Tree::KdTree(tree) => {
-                tree.traverse_counting(ray.origin, ray.direction, limit, || nodes += 1, leaf);
-            }
+        match &self.tree {
+            Tree::Bvh(tree) => nodes = tree.traverse_counting(origin, direction, limit, leaf),
+            Tree::KdTree(tree) => tree.traverse_counting(origin, direction, limit, || nodes += 1, leaf),
         }
         Work { nodes, ..work }
     }
 }
 
 /// A ray under way.
-struct Asked<'m> {
-    mesh: &'m Mesh,
+struct Asked<'a, 'm> {
+    subject: &'a Subject<'m>,
     ray: LocalRay,
     sheared: Sheared,
     per_line: f64,
@@ -185,34 +147,27 @@ struct Asked<'m> {
     best: Option<(f64, u32)>,
 }
 
-impl<'m> Asked<'m> {
+impl<'a, 'm> Asked<'a, 'm> {
     #[inline]
-    fn new(mesh: &'m Mesh, line: &Line, any: bool) -> Option<Asked<'m>> {
+    fn new(subject: &'a Subject<'m>, line: &Line, any: bool) -> Option<Asked<'a, 'm>> {
         let (ray, per_line) = LocalRay::new(line.origin, line.direction)?;
         let limit = line.t_max.next_down() * per_line;
-        Some(Asked { mesh, sheared: Sheared::new(&ray), ray, per_line, limit, any, best: None })
+        Some(Asked { subject, sheared: Sheared::new(&ray), ray, per_line, limit, any, best: None })
     }
 
     #[inline(always)]
-    fn leaf(&mut self, triangles: &[[u32; 3]], tree: &Tree, range: std::ops::Range<usize>) -> f64 {
-        let mut limit = self.limit;
+    fn leaf(&mut self, range: std::ops::Range<usize>) -> f64 {
+        let Subject { mesh, triangles, tree } = self.subject;
         for place in range {
-            let corners = triangles[place].map(|p| self.mesh.positions[p as usize]);
-            if let Some(meet) = self.sheared.meet(corners.each_ref(), self.limit) {
-                limit = self.offer(tree.order()[place], meet);
+            let corners = triangles[place].map(|p| mesh.positions[p as usize]);
+            let Some(meet) = self.sheared.meet(corners.each_ref(), self.limit) else { continue };
+            let triangle = tree.order()[place];
+            if self.best.is_none_or(|(t, first)| meet.t < t || (meet.t == t && triangle < first)) {
+                self.best = Some((meet.t, triangle));
+                self.limit = meet.t;
             }
         }
-        limit
-    }
-
-    /// Takes a meeting where it is better; gives what limits others.
-    #[inline(always)]
-    fn offer(&mut self, triangle: u32, meet: Meet) -> f64 {
-        if self.best.is_none_or(|(t, first)| meet.t < t || (meet.t == t && triangle < first)) {
-            self.best = Some((meet.t, triangle));
-            self.limit = meet.t;
-        }
-        if self.any { -1.0 } else { self.limit }
+        if self.any && self.best.is_some() { -1.0 } else { self.limit }
     }
 
     #[inline]

@@ -7,9 +7,7 @@ use glam::DVec3;
 /// x ↦ (x − center)·scale, with a power of two for scale, so that only the subtraction rounds.
 #[derive(Clone, Copy, Debug)]
 pub struct Frame {
-    /// What is 0 in it.
     pub center: DVec3,
-    /// Its units in one of the world's, a power of two.
     pub scale: f64,
 }
 
@@ -38,9 +36,9 @@ impl Frame {
 }
 
 /// One f32 step of a number, as a share of it, at the most; casting rounds by half of one.
-pub(super) const STEP: f64 = f32::EPSILON as f64;
+const STEP: f64 = f32::EPSILON as f64;
 /// The same where f32 is no longer that fine.
-pub(super) const LEAST_STEP: f64 = f32::MIN_POSITIVE as f64;
+const LEAST_STEP: f64 = f32::MIN_POSITIVE as f64;
 
 /// A float at or below x. The subtraction into the frame and the cast are together less than one f32 step.
 #[inline(always)]

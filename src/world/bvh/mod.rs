@@ -13,11 +13,10 @@ pub(super) mod survey;
 mod tests;
 mod traverse;
 
-pub use build::Costs;
-pub use frame::Frame;
-pub use traverse::{Entry, Visitor, clip};
+pub use traverse::clip;
 
 use crate::math::Aabb;
+use frame::Frame;
 
 /// Children of a node.
 const WIDTH: usize = 8;
@@ -84,17 +83,7 @@ impl Tree {
     /// A tree over `count` items, each with its box. Items whose box is empty are never met; those whose box is infinite or NaN
     /// are offered to every ray. Deterministic, whatever the number of threads.
     pub fn build(count: usize, bounds_of: impl Fn(usize) -> Aabb + Sync) -> Tree {
-        Tree::build_for(&Costs::SINGLE, count, bounds_of)
-    }
-
-    /// The same for items that cost otherwise.
-    pub fn build_for(costs: &Costs, count: usize, bounds_of: impl Fn(usize) -> Aabb + Sync) -> Tree {
-        build::build(costs, count, bounds_of)
-    }
-
-    /// Its own coordinates.
-    pub fn frame(&self) -> &Frame {
-        &self.frame
+        build::build(count, bounds_of)
     }
 
     /// No tree: every item is offered to every ray, in order.

@@ -4,12 +4,10 @@ mod counting;
 mod entry;
 mod wide;
 
-pub use entry::Entry;
-use entry::Narrow;
-
 use super::{Node, Tree, WIDTH};
 use crate::math::Aabb;
 use crate::math::error::gamma;
+use entry::{Entry, Narrow};
 use glam::DVec3;
 use std::ops::Range;
 
@@ -164,47 +162,12 @@ impl Tree {
         mut t_max: f64,
         mut leaf: impl FnMut(Range<usize>, f64) -> f64,
     ) {
-        let loose = self.loose();
-        if !loose.is_empty() {
-            t_max = leaf(loose, t_max);
+        if self.bounded < self.order.len() {
+            t_max = leaf(self.bounded..self.order.len(), t_max);
         }
-        self.visit(origin, direction, t_max, &mut Leaves(leaf));
-    }
-
-    /// What is offered to every ray: items that hang under no node.
-    pub fn loose(&self) -> Range<usize> {
-        self.bounded..self.order.len()
-    }
-
-    /// As [`Tree::traverse`], for what hangs under nodes.
-    #[inline(always)]
-    pub fn visit(&self, origin: DVec3, direction: DVec3, t_max: f64, visitor: &mut impl Visitor) {
         if !self.nodes.is_empty() && t_max >= 0.0 {
-            wide::traverse(self, origin, direction, t_max, visitor);
+            wide::traverse(self, origin, direction, t_max, leaf);
         }
-    }
-}
-
-/// What a ray does in a tree. Its functions become part of the traversal, which is compiled for what the processor has.
-pub trait Visitor {
-    /// Where the ray enters; before anything else.
-    fn enter(&mut self, entry: &Entry);
-
-    /// A range of [`Tree::order`] that the ray may meet before `t_max`; `limit` is a float at or beyond that, as a distance in the frame.
-    /// Gives the distance beyond which nothing matters any more; a negative one ends the traversal.
-    fn leaf(&mut self, range: Range<usize>, t_max: f64, limit: f32) -> f64;
-}
-
-/// A visitor that leaves are all to.
-struct Leaves<F>(F);
-
-impl<F: FnMut(Range<usize>, f64) -> f64> Visitor for Leaves<F> {
-    #[inline(always)]
-    fn enter(&mut self, _: &Entry) {}
-
-    #[inline(always)]
-    fn leaf(&mut self, range: Range<usize>, t_max: f64, _: f32) -> f64 {
-        (self.0)(range, t_max)
     }
 }
 
@@ -215,7 +178,7 @@ fn walk(
     entry: &Entry,
     mut t_max: f64,
     meets: impl Fn(&Node, f32) -> Met,
-    visitor: &mut impl Visitor,
+    mut leaf: impl FnMut(Range<usize>, f64) -> f64,
 ) {
     let mut limit = entry.limit(t_max);
     let mut stack = Stack::new();
@@ -234,7 +197,7 @@ fn walk(
                 }
             } else {
                 let first = child as usize;
-                let found = visitor.leaf(first..first + count as usize, t_max, limit);
+                let found = leaf(first..first + count as usize, t_max);
                 if found < 0.0 {
                     return;
                 }

@@ -1,6 +1,7 @@
 //! Lists of crossings against what one meeting says, and against inside and outside known in closed form.
 
 use super::mesh::MeshShape;
+use super::triangle::Sheared;
 use super::*;
 use crate::geometry::mesh::Mesh;
 use crate::scene::{self, Accelerator};
@@ -129,13 +130,17 @@ fn a_closed_mesh_has_an_inside_through_edges_and_corners() {
             let ray = random.ray();
             let mut all = vec![];
             shape.crossings(&ray, &mut all);
+            let sheared = Sheared::new(&ray);
             let mut nearest: Option<Meet> = None;
-            shape.meetings(&ray, f64::MAX, |face, meet| {
-                if nearest.is_none_or(|n| meet.t < n.t || meet.t == n.t && face < n.face) {
-                    nearest = Some(Meet { face, ..meet });
+            for i in 0..shape.tree.order().len() {
+                let limit = nearest.map_or(f64::MAX, |m| m.t);
+                if let Some(meet) = shape.meet(i, &sheared, limit) {
+                    let meet = Meet { face: shape.triangle_at(i), ..meet };
+                    if nearest.is_none_or(|n| meet.t < n.t || meet.face < n.face) {
+                        nearest = Some(meet);
+                    }
                 }
-                nearest.map_or(f64::MAX, |n| n.t)
-            });
+            }
             assert_eq!(all.first().map(bits), nearest.as_ref().map(bits), "case {case}: {ray:?}");
             if ray.origin.abs().max_element() != 1.0 {
                 let inside = ray.origin.abs().max_element() < 1.0;
@@ -156,12 +161,8 @@ fn no_triangle_of_a_small_mesh_is_lost_by_any_tree() {
             let shape = MeshShape::new(Arc::new(mesh), None, accelerator);
             let (ray, _) = LocalRay::new(DVec3::new(-1.0, 0.25, 0.25), DVec3::X).expect("a direction");
             let mut met = Vec::new();
-            shape.meetings(&ray, f64::MAX, |triangle, _| {
-                met.push(triangle);
-                f64::MAX
-            });
-            met.sort_unstable();
-            met.dedup();
+            shape.crossings(&ray, &mut met);
+            let met: Vec<u32> = met.iter().map(|meet| meet.face).collect();
             assert_eq!(met, (0..count).collect::<Vec<_>>(), "{accelerator:?}");
         }
     }

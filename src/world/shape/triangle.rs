@@ -45,16 +45,6 @@ impl Sheared {
         Sheared { origin: ray.origin, direction: ray.direction, axes, shear }
     }
 
-    /// Axes that are x, y and z after the shear: the ray's largest is z.
-    pub fn axes(&self) -> [usize; 3] {
-        self.axes
-    }
-
-    /// x and y of the direction over its z, and 1 over its z.
-    pub fn shear(&self) -> [f64; 3] {
-        self.shear
-    }
-
     /// A corner relative to the ray: sheared x and y, and z unsheared.
     #[inline(always)]
     fn corner(&self, p: &DVec3) -> [f64; 3] {

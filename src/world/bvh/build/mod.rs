@@ -39,13 +39,13 @@ fn prepare(count: usize, bounds_of: &(impl Fn(usize) -> Aabb + Sync)) -> Prepare
 /// The tree of nodes over items in their order; those without a finite box follow it.
 fn finish(ready: Prepared, mut nodes: Vec<Node>, mut order: Vec<u32>) -> Tree {
     nodes.shrink_to_fit();
-    let bounded = if nodes.is_empty() { 0 } else { order.len() };
+    let bounded = if nodes.is_empty() { 0 } else { ready.items.len() };
     let unbounded = !ready.unbounded.is_empty();
     order.extend(ready.unbounded);
     Tree { frame: ready.frame, bounds: ready.bounds, unbounded, nodes, order, bounded }
 }
 
-pub(super) fn build(costs: &Costs, count: usize, bounds_of: impl Fn(usize) -> Aabb + Sync) -> Tree {
+pub(super) fn build(count: usize, bounds_of: impl Fn(usize) -> Aabb + Sync) -> Tree {
     let mut ready = prepare(count, &bounds_of);
     let items = &mut ready.items;
     let mut order = vec![0; items.len()];
@@ -53,53 +53,11 @@ pub(super) fn build(costs: &Costs, count: usize, bounds_of: impl Fn(usize) -> Aa
     // One box would only repeat the bounds. The root is a node even where everything fits a leaf.
     if items.len() > 1 {
         let whole = Part::whole(items);
-        subtree::grow(items, whole, &mut order, &mut nodes, costs, &mut Bins::new());
+        subtree::grow(items, whole, &mut order, &mut nodes, &mut Bins::new());
     } else {
         order = items.iter().map(Item::number).collect();
     }
-    if costs.lanes > 1 && !nodes.is_empty() {
-        order = align(&mut nodes, &order, costs.lanes as usize);
-    }
     finish(ready, nodes, order)
-}
-
-/// What the builder weighs, in tests of as many items as are tested side by side.
-#[derive(Clone, Copy, Debug)]
-pub struct Costs {
-    /// How many items are tested side by side, a power of two; leaves begin at multiples of it.
-    pub lanes: u32,
-    /// A node of its own: below this gain a part is a leaf.
-    pub node: f32,
-    /// Visiting a child.
-    pub child: f32,
-}
-
-impl Costs {
-    /// Of items that are tested one by one. Measured on a million triangles: at a node's cost of 3 the tree has 40 % fewer nodes and rays
-    /// take 8 % longer, which is about what building it saves.
-    pub const SINGLE: Costs = Costs { lanes: 1, node: 2.0, child: 1.0 };
-
-    /// Of some items.
-    fn tests(&self, n: u32) -> f32 {
-        ((n + self.lanes - 1) >> self.lanes.trailing_zeros()) as f32
-    }
-}
-
-/// Gives the items leaf by leaf in the order of the nodes, each leaf from a multiple of `lanes`; its last item stands in
-/// places that are left over.
-fn align(nodes: &mut [Node], order: &[u32], lanes: usize) -> Vec<u32> {
-    let mut aligned = Vec::with_capacity(order.len() * 3 / 2);
-    for node in nodes {
-        for slot in 0..WIDTH {
-            let (first, count) = (node.child(slot) as usize, node.count(slot) as usize);
-            if count > 0 {
-                node.set_child(slot, aligned.len() as u32, count as u32);
-                aligned.extend_from_slice(&order[first..first + count]);
-                aligned.resize(aligned.len().next_multiple_of(lanes), order[first + count - 1]);
-            }
-        }
-    }
-    aligned
 }
 
 /// The items with a finite box, in order. Made in place: for a million of them a second copy would be felt.

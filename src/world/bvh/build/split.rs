@@ -1,7 +1,6 @@
 //! One split of a run: the cheapest plane between bins, by the surface-area heuristic, over all axes at once; of a handful, the
 //! cheapest of all ways.
 
-use super::Costs;
 use super::boxes::{Box32, Boxed, bounds_of, middles_of};
 use super::grid::{Grid, MOST};
 
@@ -44,10 +43,10 @@ impl Bins {
     }
 
     /// The first bin of the right half and the cost of the cheapest split along an axis.
-    fn best_along(&self, axis: usize, n_bins: usize, costs: &Costs) -> Option<(usize, f32)> {
+    fn best_along(&self, axis: usize, n_bins: usize) -> Option<(usize, f32)> {
         let (bounds, weight) = (&self.bounds[axis][..n_bins], &self.weight[axis][..n_bins]);
         // NaN where there is nothing, so that no comparison is won.
-        let cost = |bounds: &Box32, n: u32| if n > 0 { bounds.area() * costs.tests(n) } else { f32::NAN };
+        let cost = |bounds: &Box32, n: u32| if n > 0 { bounds.area() * n as f32 } else { f32::NAN };
         let mut right_cost = [0.0; MOST];
         let (mut sum, mut n) = (Box32::EMPTY, 0);
         for bin in (1..n_bins).rev() {
@@ -94,22 +93,22 @@ enum Way {
 
 impl Best {
     /// The cheapest split; none where the middles do not spread.
-    fn of<T: Boxed>(run: &[T], costs: &Costs, bins: &mut Bins) -> Option<Best> {
-        if run.len() <= HANDFUL { Best::of_handful(run, costs) } else { Best::of_many(run, costs, bins) }
+    fn of<T: Boxed>(run: &[T], bins: &mut Bins) -> Option<Best> {
+        if run.len() <= HANDFUL { Best::of_handful(run) } else { Best::of_many(run, bins) }
     }
 
-    fn of_many<T: Boxed>(run: &[T], costs: &Costs, bins: &mut Bins) -> Option<Best> {
+    fn of_many<T: Boxed>(run: &[T], bins: &mut Bins) -> Option<Best> {
         let n_bins = bins_for(run.len());
         let grid = Grid::over(&middles_of(run), n_bins);
         bins.fill(run, &grid, n_bins);
-        let along = |axis: usize| bins.best_along(axis, n_bins, costs).map(|(bin, cost)| (axis, bin, cost));
+        let along = |axis: usize| bins.best_along(axis, n_bins).map(|(bin, cost)| (axis, bin, cost));
         let (axis, bin, cost) = (0..3).filter_map(along).min_by(|a, b| a.2.total_cmp(&b.2))?;
         let bounds = [bins.sum(axis, 0..bin), bins.sum(axis, bin..n_bins)];
         Some(Best { way: Way::Plane(grid, axis, bin), cost, bounds })
     }
 
     /// Over all sets that hold the first but not all.
-    fn of_handful<T: Boxed>(run: &[T], costs: &Costs) -> Option<Best> {
+    fn of_handful<T: Boxed>(run: &[T]) -> Option<Best> {
         let mut best: Option<Best> = None;
         for set in (1..(1u32 << run.len()) - 1).step_by(2) {
             let mut bounds = [Box32::EMPTY; 2];
@@ -119,7 +118,7 @@ impl Best {
                 bounds[half].grow(one.bounds());
                 weight[half] += one.weight();
             }
-            let cost = bounds[0].area() * costs.tests(weight[0]) + bounds[1].area() * costs.tests(weight[1]);
+            let cost = bounds[0].area() * weight[0] as f32 + bounds[1].area() * weight[1] as f32;
             if best.as_ref().is_none_or(|best| cost < best.cost) {
                 best = Some(Best { way: Way::Set(set), cost, bounds });
             }
@@ -176,21 +175,21 @@ pub(super) struct Part {
     depth: u32,
 }
 
-/// What splitting a part costs.
+/// What splitting a part costs, in tests of items that come with it or go.
 #[derive(Clone, Copy)]
 pub(super) enum Price {
     /// A node of its own, tested by every ray that meets the part.
-    Node,
+    Node(f32),
     /// A child more of a node that has one to spare: all boxes of a node are tested at once, so only who meets a half pays for visiting it.
-    Lane,
+    Lane(f32),
 }
 
 impl Price {
     /// By the area of the part and of both halves together.
-    fn of(self, costs: &Costs, area: f32, halves: f32) -> f32 {
+    fn of(self, area: f32, halves: f32) -> f32 {
         match self {
-            Price::Node => costs.node * area,
-            Price::Lane => costs.child * (halves - area),
+            Price::Node(cost) => cost * area,
+            Price::Lane(cost) => cost * (halves - area),
         }
     }
 }
@@ -213,23 +212,17 @@ impl Part {
     }
 
     /// Two halves, the run partitioned; none where a leaf is cheaper.
-    pub fn split<T: Boxed>(
-        &self,
-        run: &mut [T],
-        price: Price,
-        costs: &Costs,
-        bins: &mut Bins,
-    ) -> Option<[Part; 2]> {
+    pub fn split<T: Boxed>(&self, run: &mut [T], price: Price, bins: &mut Bins) -> Option<[Part; 2]> {
         if run.len() < 2 {
             return None;
         }
-        let found = if self.depth < MAX_SAH_DEPTH { Best::of(run, costs, bins) } else { None };
+        let found = if self.depth < MAX_SAH_DEPTH { Best::of(run, bins) } else { None };
         let (len, bounds) = match found {
             Some(best) => {
                 let area = self.bounds.area();
                 let halves = best.bounds[0].area() + best.bounds[1].area();
                 if self.n_items <= MAX_LEAF
-                    && costs.tests(self.n_items as u32) * area <= best.cost + price.of(costs, area, halves)
+                    && self.n_items as f32 * area <= best.cost + price.of(area, halves)
                 {
                     return None;
                 }

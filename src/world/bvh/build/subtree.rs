@@ -1,6 +1,5 @@
 //! Nodes over parts: over items one by one, and above that over cells of items.
 
-use super::Costs;
 use super::boxes::{Boxed, Item};
 use super::cells::{Cell, Cells};
 use super::children::{Child, Children, Start};
@@ -18,17 +17,16 @@ pub(super) fn grow(
     part: Part,
     order: &mut [u32],
     nodes: &mut Vec<Node>,
-    costs: &Costs,
     bins: &mut Bins,
 ) -> u32 {
     if items.len() > ONE_BY_ONE {
         let (sorted, mut cells) = Cells::of(items);
         // All in one cell lie at one point.
         if cells.len() > 1 {
-            return over_cells(&sorted, &mut cells, part, order, nodes, costs, bins);
+            return over_cells(&sorted, &mut cells, part, order, nodes, bins);
         }
     }
-    let index = over_items(items, Start::Whole(part), nodes, costs, bins);
+    let index = over_items(items, Start::Whole(part), nodes, bins);
     for (number, item) in order.iter_mut().zip(items) {
         *number = item.number();
     }
@@ -36,15 +34,9 @@ pub(super) fn grow(
 }
 
 /// The node over items one by one, and all below it.
-fn over_items(
-    items: &mut [Item],
-    start: Start,
-    nodes: &mut Vec<Node>,
-    costs: &Costs,
-    bins: &mut Bins,
-) -> u32 {
-    let mut children = Children::of(items, start, costs, bins);
-    children.decide(items, costs, bins);
+fn over_items(items: &mut [Item], start: Start, nodes: &mut Vec<Node>, bins: &mut Bins) -> u32 {
+    let mut children = Children::of(items, start, bins);
+    children.decide(items, bins);
     let index = nodes.len();
     nodes.push(Node::EMPTY);
     let mut rest = items;
@@ -53,8 +45,8 @@ fn over_items(
         rest = after;
         let below = match *child {
             Child::Leaf(_) => None,
-            Child::Open(part) => Some(over_items(own, Start::Whole(part), nodes, costs, bins)),
-            Child::Node(_, halves) => Some(over_items(own, Start::Halves(halves), nodes, costs, bins)),
+            Child::Open(part) => Some(over_items(own, Start::Whole(part), nodes, bins)),
+            Child::Node(_, halves) => Some(over_items(own, Start::Halves(halves), nodes, bins)),
         };
         fill(&mut nodes[index], slot, child.part(), below);
     }
@@ -68,13 +60,12 @@ fn over_cells(
     part: Part,
     order: &mut [u32],
     nodes: &mut Vec<Node>,
-    costs: &Costs,
     bins: &mut Bins,
 ) -> u32 {
     if cells.len() == 1 || part.n_items <= ONE_BY_ONE {
-        return grow(&mut sorted.gather(cells), part.as_run(part.n_items), order, nodes, costs, bins);
+        return grow(&mut sorted.gather(cells), part.as_run(part.n_items), order, nodes, bins);
     }
-    let children = Children::of(cells, Start::Whole(part.as_run(cells.len())), costs, bins);
+    let children = Children::of(cells, Start::Whole(part.as_run(cells.len())), bins);
     let index = nodes.len();
     nodes.push(Node::EMPTY);
     let mut runs = Vec::with_capacity(WIDTH);
@@ -86,11 +77,11 @@ fn over_cells(
         (cells, order) = (after, order_after);
     }
     let below = if rayon::current_num_threads() > 1 {
-        apart(sorted, runs, costs, nodes)
+        apart(sorted, runs, nodes)
     } else {
         // The detour by parts would give the same nodes.
         runs.into_iter()
-            .map(|(cells, part, order)| child_of_cells(sorted, cells, part, order, nodes, costs, bins))
+            .map(|(cells, part, order)| child_of_cells(sorted, cells, part, order, nodes, bins))
             .collect()
     };
     for (slot, (child, below)) in children.all().iter().zip(below).enumerate() {
@@ -106,11 +97,10 @@ fn child_of_cells(
     part: Part,
     order: &mut [u32],
     nodes: &mut Vec<Node>,
-    costs: &Costs,
     bins: &mut Bins,
 ) -> Option<u32> {
     if part.n_items > MAX_LEAF {
-        return Some(over_cells(sorted, cells, part, order, nodes, costs, bins));
+        return Some(over_cells(sorted, cells, part, order, nodes, bins));
     }
     for (number, item) in order.iter_mut().zip(sorted.gather(cells)) {
         *number = item.number();
@@ -122,12 +112,11 @@ fn child_of_cells(
 fn apart(
     sorted: &Cells<'_>,
     runs: Vec<(&mut [Cell], Part, &mut [u32])>,
-    costs: &Costs,
     nodes: &mut Vec<Node>,
 ) -> Vec<Option<u32>> {
     let build = |(cells, part, order): (&mut [Cell], Part, &mut [u32])| {
         let mut below = Vec::new();
-        child_of_cells(sorted, cells, part, order, &mut below, costs, &mut Bins::new()).map(|_| below)
+        child_of_cells(sorted, cells, part, order, &mut below, &mut Bins::new()).map(|_| below)
     };
     let built: Vec<Option<Vec<Node>>> = runs.into_par_iter().map(build).collect();
     built.into_iter().map(|below| below.map(|below| append(below, nodes))).collect()

@@ -2,7 +2,7 @@
 //! instructions.
 
 use super::wide::meets;
-use super::{Entry, Leaves, Narrow, Visitor, walk};
+use super::{Entry, Narrow, walk};
 use crate::world::bvh::Tree;
 use glam::DVec3;
 use std::cell::Cell;
@@ -17,33 +17,20 @@ impl Tree {
         mut t_max: f64,
         mut leaf: impl FnMut(Range<usize>, f64) -> f64,
     ) -> u64 {
-        let loose = self.loose();
-        if !loose.is_empty() {
-            t_max = leaf(loose, t_max);
+        if self.bounded < self.order.len() {
+            t_max = leaf(self.bounded..self.order.len(), t_max);
         }
-        self.visit_counting(origin, direction, t_max, &mut Leaves(leaf))
-    }
-
-    /// As [`Tree::visit`]; gives how many nodes were visited.
-    pub fn visit_counting(
-        &self,
-        origin: DVec3,
-        direction: DVec3,
-        t_max: f64,
-        visitor: &mut impl Visitor,
-    ) -> u64 {
         if self.nodes.is_empty() || !(t_max >= 0.0) {
             return 0;
         }
         let Some(entry) = Entry::new(&self.frame, &self.bounds, origin, direction, t_max) else { return 0 };
         let ray = Narrow::new(&entry);
-        visitor.enter(&entry);
         let visits = Cell::new(0);
         let count = |node: &_, limit| {
             visits.set(visits.get() + 1);
             meets(&ray, node, limit)
         };
-        walk(&self.nodes, &entry, t_max, count, visitor);
+        walk(&self.nodes, &entry, t_max, count, leaf);
         visits.get()
     }
 }

@@ -9,7 +9,7 @@ use glam::DVec3;
 /// A ray where it enters a tree's bounds, in the tree's frame. The fourth lane means nothing.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(align(32))]
-pub struct Entry {
+pub(super) struct Entry {
     /// The point, each coordinate within `margin`.
     pub point: [f64; 4],
     /// 1 over each coordinate of the direction.

@@ -2,27 +2,39 @@
 //! how many numbers one instruction takes differs, not one operation, so that every picture is the same on all of them.
 //! Knows nothing of what is traversed. One of the two rooms of the tree with unsafe code: there is no other way to such instructions.
 
-use super::{Entry, Met, Narrow, Node, SLOT, Tree, Visitor, WIDTH};
+use super::{Entry, Met, Narrow, Node, SLOT, Tree, WIDTH};
 use glam::DVec3;
+use std::ops::Range;
 
 /// [`super::walk`] from where a ray enters, with the widest instructions that there are.
 #[inline(always)]
-pub(super) fn traverse(tree: &Tree, origin: DVec3, direction: DVec3, t_max: f64, visitor: &mut impl Visitor) {
+pub(super) fn traverse(
+    tree: &Tree,
+    origin: DVec3,
+    direction: DVec3,
+    t_max: f64,
+    leaf: impl FnMut(Range<usize>, f64) -> f64,
+) {
     #[cfg(target_arch = "x86_64")]
     if crate::math::vectors::has_avx2() {
         // SAFETY: the processor has just been found to have what the function is compiled for.
         #[allow(unsafe_code, reason = "code for instructions that not every processor has")]
-        return unsafe { x86::traverse_avx2(tree, origin, direction, t_max, visitor) };
+        return unsafe { x86::traverse_avx2(tree, origin, direction, t_max, leaf) };
     }
-    plain(tree, origin, direction, t_max, visitor);
+    plain(tree, origin, direction, t_max, leaf);
 }
 
 /// The same by plain operations.
-fn plain(tree: &Tree, origin: DVec3, direction: DVec3, t_max: f64, visitor: &mut impl Visitor) {
+fn plain(
+    tree: &Tree,
+    origin: DVec3,
+    direction: DVec3,
+    t_max: f64,
+    leaf: impl FnMut(Range<usize>, f64) -> f64,
+) {
     let Some(entry) = Entry::new(&tree.frame, &tree.bounds, origin, direction, t_max) else { return };
     let ray = Narrow::new(&entry);
-    visitor.enter(&entry);
-    super::walk(&tree.nodes, &entry, t_max, |node, limit| meets(&ray, node, limit), visitor);
+    super::walk(&tree.nodes, &entry, t_max, |node, limit| meets(&ray, node, limit), leaf);
 }
 
 /// The test by plain operations: the definition of what the others do.
@@ -54,12 +66,11 @@ mod x86 {
         origin: DVec3,
         direction: DVec3,
         t_max: f64,
-        visitor: &mut impl Visitor,
+        leaf: impl FnMut(Range<usize>, f64) -> f64,
     ) {
         let Some(entry) = Entry::new(&tree.frame, &tree.bounds, origin, direction, t_max) else { return };
         let ray = Narrow::new(&entry);
-        visitor.enter(&entry);
-        super::super::walk(&tree.nodes, &entry, t_max, |node, limit| meets_avx2(&ray, node, limit), visitor);
+        super::super::walk(&tree.nodes, &entry, t_max, |node, limit| meets_avx2(&ray, node, limit), leaf);
     }
 
     /// [`super::meets`], eight children at once. The larger and the smaller of two give their second operand where one is NaN, as
@@ -105,20 +116,6 @@ mod x86 {
 mod tests {
     use super::*;
     use crate::math::Aabb;
-    use std::ops::Range;
-
-    /// What is offered, in order, where nothing is ever found.
-    #[derive(Default)]
-    struct Offered(Vec<Range<usize>>);
-
-    impl Visitor for Offered {
-        fn enter(&mut self, _: &Entry) {}
-
-        fn leaf(&mut self, range: Range<usize>, t_max: f64, _: f32) -> f64 {
-            self.0.push(range);
-            t_max
-        }
-    }
 
     #[test]
     fn the_widest_instructions_take_the_same_way_as_plain_operations() {
@@ -131,11 +128,15 @@ mod tests {
             let origin = corner(i + 7) * 3.0;
             // Some along an axis, where planes meet 0·∞.
             let direction = if i % 5 == 0 { DVec3::AXES[i % 3] } else { (corner(i) - origin).normalize() };
-            let (mut by_plain, mut by_wide) = (Offered::default(), Offered::default());
-            plain(&tree, origin, direction, 1e3, &mut by_plain);
-            traverse(&tree, origin, direction, 1e3, &mut by_wide);
-            n_offered += by_plain.0.len();
-            assert_eq!(by_wide.0, by_plain.0, "ray {i}");
+            let (mut by_plain, mut by_wide) = (Vec::new(), Vec::new());
+            let noted = |all: &mut Vec<Range<usize>>, range, t_max| {
+                all.push(range);
+                t_max
+            };
+            plain(&tree, origin, direction, 1e3, |range, t_max| noted(&mut by_plain, range, t_max));
+            traverse(&tree, origin, direction, 1e3, |range, t_max| noted(&mut by_wide, range, t_max));
+            n_offered += by_plain.len();
+            assert_eq!(by_wide, by_plain, "ray {i}");
         }
         assert!(n_offered > 1000, "{n_offered}");
     }
