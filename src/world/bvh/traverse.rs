@@ -153,38 +153,47 @@ impl Stack {
 
 impl Tree {
     /// Offers to `leaf` every range of [`Tree::order`] that the ray may meet before `t_max`, near ones first. `leaf` gives the
-    /// distance beyond which nothing matters any more (so far); a negative one ends the traversal.
+    /// distance beyond which nothing matters any more (so far); a negative one ends the traversal. No coordinate of the direction reaches 2.
     #[inline]
     pub fn traverse(
         &self,
         origin: DVec3,
         direction: DVec3,
-        mut t_max: f64,
+        t_max: f64,
         mut leaf: impl FnMut(Range<usize>, f64) -> f64,
     ) {
+        if let Some(t_max) = self.offer_loose(t_max, &mut leaf) {
+            wide::walk(self, origin, direction, t_max, leaf);
+        }
+    }
+
+    /// Offers what hangs under no node; gives what limits the rest, none where that does not matter.
+    #[inline(always)]
+    fn offer_loose(&self, mut t_max: f64, leaf: &mut impl FnMut(Range<usize>, f64) -> f64) -> Option<f64> {
         if self.bounded < self.order.len() {
             t_max = leaf(self.bounded..self.order.len(), t_max);
         }
-        if !self.nodes.is_empty() && t_max >= 0.0 {
-            wide::traverse(self, origin, direction, t_max, leaf);
-        }
+        (!self.nodes.is_empty() && t_max >= 0.0).then_some(t_max)
     }
 }
 
-/// The traversal from the first node down. `meets` tests a node's children against a limit.
+/// The traversal from where the ray enters. `meets` tests a node's children against a limit.
 #[inline(always)]
 fn walk(
-    nodes: &[Node],
-    entry: &Entry,
+    tree: &Tree,
+    origin: DVec3,
+    direction: DVec3,
     mut t_max: f64,
-    meets: impl Fn(&Node, f32) -> Met,
+    meets: impl Fn(&Narrow, &Node, f32) -> Met,
     mut leaf: impl FnMut(Range<usize>, f64) -> f64,
 ) {
+    let Some(entry) = Entry::new(tree, origin, direction, t_max) else { return };
+    let (ray, nodes) = (Narrow::new(&entry), &tree.nodes);
     let mut limit = entry.limit(t_max);
     let mut stack = Stack::new();
     let mut at = 0;
     loop {
-        let mut next = stack.enter(at, meets(&nodes[at as usize], limit)).or_else(|| stack.next(limit));
+        let mut next = stack.enter(at, meets(&ray, &nodes[at as usize], limit)).or_else(|| stack.next(limit));
         loop {
             let Some(pending) = next else { return };
             let (node, slot) = (&nodes[pending as u32 as usize], (pending >> 32) as u32 & SLOT);

@@ -1,77 +1,62 @@
-//! Where a ray enters a tree, in the tree's frame, and the same narrowed to f32. By plain operations: the definition of what wider
-//! instructions do.
+//! Where a ray enters a tree, in the tree's frame, and the same narrowed to f32 for the test of boxes.
 
 use super::{FRAME_SIZE, MARGIN, SLACK, WIDEN, clip_by};
-use crate::math::Aabb;
-use crate::world::bvh::frame::{Frame, round_up};
+use crate::world::bvh::Tree;
+use crate::world::bvh::frame::round_up;
 use glam::DVec3;
 
-/// A ray where it enters a tree's bounds, in the tree's frame. The fourth lane means nothing.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[repr(align(32))]
-pub(super) struct Entry {
+/// A ray where it enters a tree's bounds, in the tree's frame.
+pub struct Entry {
     /// The point, each coordinate within `margin`.
-    pub point: [f64; 4],
+    point: DVec3,
     /// 1 over each coordinate of the direction.
-    pub inverse: [f64; 4],
+    inverse: DVec3,
     /// Bound on the roundings up to the point, and in an exact test of what is inside.
-    pub margin: f64,
+    margin: f64,
     /// s = (t − start)·scale: distances from the point in the frame, by distances of the ray.
-    pub(super) start: f64,
-    pub(super) scale: f64,
+    start: f64,
+    scale: f64,
 }
 
 impl Entry {
-    /// None where the ray misses the bounds before `t_max`.
+    /// None where the ray misses the bounds before `t_max`. No coordinate of its direction reaches 2.
     #[inline(always)]
-    pub(super) fn new(
-        frame: &Frame,
-        bounds: &Aabb,
-        origin: DVec3,
-        direction: DVec3,
-        t_max: f64,
-    ) -> Option<Entry> {
+    pub fn new(tree: &Tree, origin: DVec3, direction: DVec3, t_max: f64) -> Option<Entry> {
         let inverse = direction.recip();
-        let (start, _) = clip_by(bounds, origin, inverse, t_max)?;
-        let from_center = origin - frame.center;
-        let point = (from_center + direction * start) * frame.scale;
+        let (start, _) = clip_by(&tree.bounds, origin, inverse, t_max)?;
+        let scale = tree.frame.scale;
+        let from_center = origin - tree.frame.center;
+        let travelled = from_center.abs().max_element() + 2.0 * start;
         Some(Entry {
-            point: [point.x, point.y, point.z, 0.0],
-            inverse: [inverse.x, inverse.y, inverse.z, 0.0],
-            margin: Entry::margin(from_center.abs().max_element(), start, frame.scale),
+            point: (from_center + direction * start) * scale,
+            inverse,
+            margin: MARGIN * (travelled * scale + FRAME_SIZE),
             start,
-            scale: frame.scale,
+            scale,
         })
-    }
-
-    /// By how far the origin is from the frame's centre, and how far the ray goes until it enters; no coordinate of its direction
-    /// reaches 2.
-    #[inline(always)]
-    pub(super) fn margin(from_center: f64, start: f64, scale: f64) -> f64 {
-        MARGIN * ((from_center + 2.0 * start) * scale + FRAME_SIZE)
     }
 
     /// A float at or beyond the distance t in the tree's frame.
     #[inline(always)]
-    pub(super) fn limit(&self, t: f64) -> f32 {
+    pub fn limit(&self, t: f64) -> f32 {
         round_up(((t - self.start) * SLACK + t * MARGIN) * self.scale * f64::from(WIDEN))
     }
 }
 
-/// A ray in a tree's frame, narrowed so that it meets more boxes rather than fewer.
 /// Bound on what rounding the entry's point and its margin to f32, and widening by it, lose: three roundings of numbers up to 4.
 const POINT_STEP: f32 = 8.0 * f32::EPSILON;
 
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) struct Narrow {
+/// A ray in a tree's frame, narrowed so that it meets more boxes rather than fewer.
+#[derive(Default)]
+pub struct Narrow {
     /// Where the planes that the ray enters through are measured from, and those it leaves through.
-    pub near_origin: [f32; 4],
-    pub far_origin: [f32; 4],
+    pub near_origin: [f32; 3],
+    pub far_origin: [f32; 3],
     /// Of the direction; widened for the far planes.
-    pub near_inverse: [f32; 4],
-    pub far_inverse: [f32; 4],
+    pub near_inverse: [f32; 3],
+    pub far_inverse: [f32; 3],
     /// Which coordinates of the direction are negative, as bits.
-    pub negative: u32,
+    negative: u32,
 }
 
 impl Narrow {

@@ -1,14 +1,14 @@
-//! The test of a node's children, what a ray needs for it, and the traversal around both, compiled for what the processor has: only
-//! how many numbers one instruction takes differs, not one operation, so that every picture is the same on all of them.
-//! Knows nothing of what is traversed. One of the two rooms of the tree with unsafe code: there is no other way to such instructions.
+//! The test of a node's children, and the traversal around it, compiled for what the processor has: only how many children one
+//! instruction tests differs, not one operation or its order, so that every picture is the same on all of them. Knows nothing of
+//! what is traversed. One of the two rooms of the tree with unsafe code: there is no other way to such instructions.
 
-use super::{Entry, Met, Narrow, Node, SLOT, Tree, WIDTH};
+use super::{Met, Narrow, Node, SLOT, Tree, WIDTH};
 use glam::DVec3;
 use std::ops::Range;
 
-/// [`super::walk`] from where a ray enters, with the widest instructions that there are.
+/// [`super::walk`] with the widest instructions that there are.
 #[inline(always)]
-pub(super) fn traverse(
+pub(super) fn walk(
     tree: &Tree,
     origin: DVec3,
     direction: DVec3,
@@ -19,22 +19,9 @@ pub(super) fn traverse(
     if crate::math::vectors::has_avx2() {
         // SAFETY: the processor has just been found to have what the function is compiled for.
         #[allow(unsafe_code, reason = "code for instructions that not every processor has")]
-        return unsafe { x86::traverse_avx2(tree, origin, direction, t_max, leaf) };
+        return unsafe { x86::walk_avx2(tree, origin, direction, t_max, leaf) };
     }
-    plain(tree, origin, direction, t_max, leaf);
-}
-
-/// The same by plain operations.
-fn plain(
-    tree: &Tree,
-    origin: DVec3,
-    direction: DVec3,
-    t_max: f64,
-    leaf: impl FnMut(Range<usize>, f64) -> f64,
-) {
-    let Some(entry) = Entry::new(&tree.frame, &tree.bounds, origin, direction, t_max) else { return };
-    let ray = Narrow::new(&entry);
-    super::walk(&tree.nodes, &entry, t_max, |node, limit| meets(&ray, node, limit), leaf);
+    super::walk(tree, origin, direction, t_max, meets, leaf);
 }
 
 /// The test by plain operations: the definition of what the others do.
@@ -61,16 +48,15 @@ mod x86 {
     use std::arch::x86_64::*;
 
     #[target_feature(enable = "avx2")]
-    pub(super) fn traverse_avx2(
+    pub(super) fn walk_avx2(
         tree: &Tree,
         origin: DVec3,
         direction: DVec3,
         t_max: f64,
         leaf: impl FnMut(Range<usize>, f64) -> f64,
     ) {
-        let Some(entry) = Entry::new(&tree.frame, &tree.bounds, origin, direction, t_max) else { return };
-        let ray = Narrow::new(&entry);
-        super::super::walk(&tree.nodes, &entry, t_max, |node, limit| meets_avx2(&ray, node, limit), leaf);
+        let meets = |ray: &Narrow, node: &Node, limit| meets_avx2(ray, node, limit);
+        super::super::walk(tree, origin, direction, t_max, meets, leaf);
     }
 
     /// [`super::meets`], eight children at once. The larger and the smaller of two give their second operand where one is NaN, as
@@ -133,8 +119,9 @@ mod tests {
                 all.push(range);
                 t_max
             };
-            plain(&tree, origin, direction, 1e3, |range, t_max| noted(&mut by_plain, range, t_max));
-            traverse(&tree, origin, direction, 1e3, |range, t_max| noted(&mut by_wide, range, t_max));
+            let to_plain = |range, t_max| noted(&mut by_plain, range, t_max);
+            super::super::walk(&tree, origin, direction, 1e3, meets, to_plain);
+            walk(&tree, origin, direction, 1e3, |range, t_max| noted(&mut by_wide, range, t_max));
             n_offered += by_plain.len();
             assert_eq!(by_wide, by_plain, "ray {i}");
         }
