@@ -6,13 +6,13 @@ picture beside the reference and their difference.
 
 usage: light.py --out DIR [--runs N] [--ogee PATH] [--samples N] [--only cornell|caustic]
 needs: povray on the path, `pip install numpy OpenEXR pillow`, and `cargo build --release`. Pictures go to target/povray."""
-import argparse, json, math, os, statistics, subprocess, sys
+import argparse, json, math, os, statistics, sys
 import numpy as np
 import OpenEXR
 from PIL import Image
+from compare import HERE, ROOT
+from compare import run as timed
 
-HERE = os.path.dirname(os.path.abspath(__file__))
-ROOT = os.path.dirname(os.path.dirname(HERE))
 WORK = os.path.join(ROOT, "target", "povray", "light")
 COLOURS = ["#c0392b", "#2471a3", "#239b56", "#b9770e", "#7d3c98"]
 
@@ -40,12 +40,11 @@ SCENES = {
 
 def run(command):
     """CPU seconds of a command that must succeed."""
-    child = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, cwd=WORK)
-    said = child.stderr.read()
-    _, status, usage = os.wait4(child.pid, 0)
-    if os.waitstatus_to_exitcode(status):
+    everywhere = ",".join(map(str, sorted(os.sched_getaffinity(0))))
+    _, cpu, _, code, said = timed(command, everywhere)
+    if code:
         sys.exit(f"{' '.join(command)}\n{said.decode()[-2000:]}")
-    return usage.ru_utime + usage.ru_stime
+    return cpu
 
 
 def povray(name, size, declared, out):
