@@ -34,12 +34,9 @@ pub fn render(machine: &Machine, rows: &[Row]) -> Vec<Page> {
 }
 
 fn head(machine: &Machine) -> String {
-    let commit =
-        if machine.commit.is_empty() { String::new() } else { format!(", commit {}", machine.commit) };
     format!(
         "# Speed against error\n\n\
-         `ogee bench kernels --{mode}{count}` measured it, `ogee bench report` wrote this page from [results](results) alone. Version {version}{commit}, {build}, {cpu}, \
-         {target}; load {load:.1} at the start; seed {seed}.\n\n\
+         `ogee bench kernels --{mode}{count}` measured it, `ogee bench report` wrote this page from [results](results) alone. {told}; seed {seed}.\n\n\
          Every variant answers the same inputs. Errors are against double-double arithmetic, exact rationals or mpmath, as each component's source says; \
          what is missed or made up is counted and never averaged into an error. Times are medians of blocks taken in turn, ± the median \
          deviation; a ratio is the median of ratios taken block by block against the first variant, with its 95 % bootstrap interval. \
@@ -49,11 +46,7 @@ fn head(machine: &Machine) -> String {
          the error of the rest.\n",
         mode = machine.mode,
         count = if machine.counter.is_empty() { "" } else { " --count" },
-        version = machine.version,
-        build = machine.build,
-        cpu = machine.cpu,
-        target = machine.target,
-        load = machine.load,
+        told = machine.told(),
         seed = machine.seed,
         counted = counted(machine),
     )

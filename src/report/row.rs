@@ -112,3 +112,12 @@ pub struct Machine {
     /// What counted instructions; empty where nothing did.
     pub counter: String,
 }
+
+impl Machine {
+    /// Version, commit where it is known, build, processor, target and load, as heads of pages tell them.
+    pub fn told(&self) -> String {
+        let Machine { cpu, target, version, commit, build, load, .. } = self;
+        let commit = if commit.is_empty() { String::new() } else { format!(", commit {commit}") };
+        format!("Version {version}{commit}, {build}, {cpu}, {target}; load {load:.1} at the start")
+    }
+}

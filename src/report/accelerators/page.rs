@@ -24,23 +24,16 @@ pub fn render(machine: &Machine, rows: &[AcceleratorRow]) -> Vec<Page> {
 }
 
 fn head(machine: &Machine) -> String {
-    let commit =
-        if machine.commit.is_empty() { String::new() } else { format!(", commit {}", machine.commit) };
     format!(
         "# Trees: what a ray costs\n\n\
-         `ogee bench accelerators` measured it, `ogee bench report` wrote this page from [results](results) alone. Version {version}{commit}, {build}, {cpu}, \
-         {target}; load {load:.1} at the start.\n\n\
+         `ogee bench accelerators` measured it, `ogee bench report` wrote this page from [results](results) alone. {told}.\n\n\
          All trees stand over the same triangles with the same test of each, one by one, as scenes do. Bytes are for \
          each triangle: the tree's nodes, and what is in its leaves; those of the mesh itself come on top and are the same for all. Rays are on one \
          thread, in turn, the fastest of several rounds; building takes all threads. Nodes and tests are counted, and the same on every machine; the \
          nodes of `bvh` have eight children, those of `kdtree` two, and its leaves count as nodes. Wrong are rays that meet \
          another triangle, at another distance, or are blocked otherwise, than by a test of every triangle: half of them go through edges and corners. \
          `bvh` and `kdtree` are what scenes use; the others are what they are measured against.\n",
-        version = machine.version,
-        build = machine.build,
-        cpu = machine.cpu,
-        target = machine.target,
-        load = machine.load,
+        told = machine.told(),
     )
 }
 

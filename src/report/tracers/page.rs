@@ -42,23 +42,16 @@ fn variants<'a>(rows: &[&'a TracerRow]) -> Variants<'a> {
 }
 
 fn head(machine: &Machine) -> String {
-    let commit =
-        if machine.commit.is_empty() { String::new() } else { format!(", commit {}", machine.commit) };
     format!(
         "# Tracers: time against error\n\n\
-         `ogee bench tracers` measured it, `ogee bench report` wrote this page from [results](results) alone. Version {version}{commit}, {build}, {cpu}, \
-         {target}; load {load:.1} at the start.\n\n\
+         `ogee bench tracers` measured it, `ogee bench report` wrote this page from [results](results) alone. {told}.\n\n\
          Each figure is over several pictures of one scene that differ in their seed alone, rendered in turn with those of the other variants. What seeds \
          disagree in is noise (root of the mean variance of a value; a value is a channel of a pixel); what their mean is off by is bias, less the part \
          of it that is noise of the mean and of the reference. RMSE is both together. The mean's difference is of the picture as a whole, with its \
          95 % interval; it is set in bold where it is more than chance at 1 % over all rows of the scene. Efficiency is 1 / (RMSE² · seconds) over \
          that of the first row. Seconds are of this machine under its load, of the tracer alone; ratios last longer.\n\n\
          In the plots a dashed line is of a variant whose mean is off by more than chance, so that more samples do not lead it to the reference.\n",
-        version = machine.version,
-        build = machine.build,
-        cpu = machine.cpu,
-        target = machine.target,
-        load = machine.load,
+        told = machine.told(),
     )
 }
 
