@@ -20,6 +20,7 @@ pub mod lower;
 mod place;
 mod query;
 pub mod shape;
+mod stack;
 pub mod texture;
 pub mod tree;
 

@@ -7,6 +7,7 @@ mod wide;
 use super::{Node, Tree, WIDTH};
 use crate::math::Aabb;
 use crate::math::error::gamma;
+use crate::world::stack::Stack;
 use entry::{Entry, Narrow};
 use glam::DVec3;
 use std::ops::Range;
@@ -70,85 +71,48 @@ const SLOT: u32 = WIDTH as u32 - 1;
 /// A child that is still to be visited: its distance and slot, and its node.
 type Pending = u64;
 
-/// A stack that spills.
-struct Stack {
-    entries: [Pending; STACK],
-    len: usize,
-    spilled: Vec<Pending>,
+/// The children that are still to be visited.
+type Waiting = Stack<Pending, STACK>;
+
+/// The last child that begins before the limit.
+#[inline(always)]
+fn next(stack: &mut Waiting, limit: f32) -> Option<Pending> {
+    stack.next(|entry| f32::from_bits((entry >> 32) as u32 & !SLOT) <= limit)
 }
 
-impl Stack {
-    #[inline(always)]
-    fn new() -> Stack {
-        Stack { entries: [0; STACK], len: 0, spilled: Vec::new() }
+/// Pushes the children that the ray meets but the nearest, farther ones first; gives the nearest.
+#[inline(always)]
+fn enter(stack: &mut Waiting, node: u32, (mut mask, keys): Met) -> Option<Pending> {
+    if mask == 0 {
+        return None;
     }
-
-    #[inline(always)]
-    fn push(&mut self, entry: Pending) {
-        if self.len < STACK {
-            self.entries[self.len] = entry;
-            self.len += 1;
-        } else {
-            self.spilled.push(entry);
-        }
+    let mut take = || {
+        let key = keys[(mask.trailing_zeros() & SLOT) as usize];
+        mask &= mask - 1;
+        (u64::from(key) << 32 | u64::from(node), mask == 0)
+    };
+    let (first, is_last) = take();
+    if is_last {
+        return Some(first);
     }
-
-    #[inline(always)]
-    fn pop(&mut self) -> Option<Pending> {
-        if self.len == STACK
-            && let Some(entry) = self.spilled.pop()
-        {
-            return Some(entry);
-        }
-        self.len = self.len.checked_sub(1)?;
-        Some(self.entries[self.len])
+    let (second, is_last) = take();
+    let (mut nearest, other) = (first.min(second), first.max(second));
+    let bottom = stack.len();
+    stack.push(other);
+    if is_last {
+        return Some(nearest);
     }
-
-    /// The last entry that begins before the limit.
-    #[inline(always)]
-    fn next(&mut self, limit: f32) -> Option<Pending> {
-        loop {
-            let entry = self.pop()?;
-            if f32::from_bits((entry >> 32) as u32 & !SLOT) <= limit {
-                return Some(entry);
-            }
-        }
-    }
-
-    /// Pushes the children that the ray meets but the nearest, farther ones first; gives the nearest.
-    #[inline(always)]
-    fn enter(&mut self, node: u32, (mut mask, keys): Met) -> Option<Pending> {
-        if mask == 0 {
-            return None;
-        }
-        let mut take = || {
-            let key = keys[(mask.trailing_zeros() & SLOT) as usize];
-            mask &= mask - 1;
-            (u64::from(key) << 32 | u64::from(node), mask == 0)
-        };
-        let (first, is_last) = take();
+    loop {
+        let (next, is_last) = take();
+        stack.push(nearest.max(next));
+        nearest = nearest.min(next);
         if is_last {
-            return Some(first);
+            break;
         }
-        let (second, is_last) = take();
-        let (mut nearest, other) = (first.min(second), first.max(second));
-        let bottom = self.len;
-        self.push(other);
-        if is_last {
-            return Some(nearest);
-        }
-        loop {
-            let (next, is_last) = take();
-            self.push(nearest.max(next));
-            nearest = nearest.min(next);
-            if is_last {
-                break;
-            }
-        }
-        // Where some spilled, their order is lost, which costs time only.
-        sort_far_first(&mut self.entries[bottom..self.len]);
-        Some(nearest)
     }
+    // Where some spilled, their order is lost, which costs time only.
+    sort_far_first(stack.above(bottom));
+    Some(nearest)
 }
 
 impl Tree {
@@ -190,12 +154,13 @@ fn walk(
     let Some(entry) = Entry::new(tree, origin, direction, t_max) else { return };
     let (ray, nodes) = (Narrow::new(&entry), &tree.nodes);
     let mut limit = entry.limit(t_max);
-    let mut stack = Stack::new();
+    let mut stack = Waiting::new();
     let mut at = 0;
     loop {
-        let mut next = stack.enter(at, meets(&ray, &nodes[at as usize], limit)).or_else(|| stack.next(limit));
+        let mut waiting = enter(&mut stack, at, meets(&ray, &nodes[at as usize], limit))
+            .or_else(|| next(&mut stack, limit));
         loop {
-            let Some(pending) = next else { return };
+            let Some(pending) = waiting else { return };
             let (node, slot) = (&nodes[pending as u32 as usize], (pending >> 32) as u32 & SLOT);
             let (child, count) = (node.child(slot as usize), node.count(slot as usize));
             if count == 0 {
@@ -215,7 +180,7 @@ fn walk(
                     limit = entry.limit(t_max);
                 }
             }
-            next = stack.next(limit);
+            waiting = next(&mut stack, limit);
         }
     }
 }

@@ -11,6 +11,7 @@
 use super::Tree;
 use crate::math::error::gamma;
 use crate::math::exact::{exponent, power_of_two};
+use crate::world::stack::Stack;
 use glam::DVec3;
 use std::ops::Range;
 
@@ -123,49 +124,6 @@ struct Entry {
     far: f64,
 }
 
-/// A stack that spills.
-struct Stack {
-    entries: [Entry; STACK],
-    len: usize,
-    spilled: Vec<Entry>,
-}
-
-impl Stack {
-    #[inline(always)]
-    fn push(&mut self, entry: Entry) {
-        match self.entries.get_mut(self.len) {
-            Some(free) => {
-                *free = entry;
-                self.len += 1;
-            }
-            None => self.spilled.push(entry),
-        }
-    }
-
-    #[inline(always)]
-    fn pop(&mut self) -> Option<Entry> {
-        if self.len == STACK
-            && let Some(entry) = self.spilled.pop()
-        {
-            return Some(entry);
-        }
-        self.len = self.len.checked_sub(1)?;
-        Some(self.entries[self.len])
-    }
-
-    /// The last entry that begins before the limit.
-    #[inline(always)]
-    fn next(&mut self, limit: f64) -> Option<Entry> {
-        loop {
-            let entry = self.pop()?;
-            if entry.near > limit {
-                continue;
-            }
-            return Some(entry);
-        }
-    }
-}
-
 impl Tree {
     /// Offers to `leaf` every range of [`Tree::order`] that the ray may meet before `t_max`, near ones first, some items perhaps more than once.
     /// `leaf` gives the distance beyond which nothing matters any more (so far); a negative one ends the traversal.
@@ -210,7 +168,7 @@ impl Tree {
         if near > far {
             return;
         }
-        let mut stack = Stack { entries: [Entry::default(); STACK], len: 0, spilled: Vec::new() };
+        let mut stack = Stack::<Entry, STACK>::new();
         let mut offered = [u32::MAX; MAILBOXES];
         let mut at = 0;
         loop {
@@ -259,7 +217,8 @@ impl Tree {
                     limit = ray.limit(t_max);
                 }
             }
-            let Some(next) = stack.next(limit) else { return };
+            // The last that begins before the limit, NaN included.
+            let Some(next) = stack.next(|entry| !(entry.near > limit)) else { return };
             (at, near, far) = (next.node, next.near, earlier(next.far, limit));
         }
     }
