@@ -1,7 +1,7 @@
 //! The tree that a scene asks for: a hierarchy of boxes, a kd-tree, or a list. What is under it knows only ranges of items.
 
 #[cfg(test)]
-mod tests;
+pub(super) mod tests;
 
 use super::{bvh, kdtree};
 use crate::math::Aabb;

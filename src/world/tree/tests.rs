@@ -10,18 +10,29 @@ use glam::DVec3;
 
 const ALL: [Accelerator; 3] = [Accelerator::Bvh, Accelerator::KdTree, Accelerator::None];
 
-fn vector(random: &mut Random) -> DVec3 {
+pub(in crate::world) fn vector(random: &mut Random) -> DVec3 {
     DVec3::from_array(std::array::from_fn(|_| random.between(-1.0, 1.0)))
 }
 
+/// So many boxes about a place, by a seed.
+type Make = fn(usize, DVec3, u64) -> Vec<Aabb>;
+
+/// A few are large, so that they straddle.
 fn boxes(count: usize, offset: DVec3, seed: u64) -> Vec<Aabb> {
+    boxes_of(count, offset, seed, |i| if i % 20 == 0 { 6.0 } else { 0.3 })
+}
+
+/// None is large.
+pub(in crate::world) fn small_boxes(count: usize, offset: DVec3, seed: u64) -> Vec<Aabb> {
+    boxes_of(count, offset, seed, |_| 0.3)
+}
+
+fn boxes_of(count: usize, offset: DVec3, seed: u64, size: impl Fn(usize) -> f64) -> Vec<Aabb> {
     let mut random = Random::new(seed);
     (0..count)
         .map(|i| {
             let at = offset + vector(&mut random) * 10.0;
-            // A few are large, so that they straddle.
-            let size = if i % 20 == 0 { 6.0 } else { 0.3 };
-            Aabb { min: at, max: at + vector(&mut random).abs() * size }
+            Aabb { min: at, max: at + vector(&mut random).abs() * size(i) }
         })
         .collect()
 }
@@ -39,8 +50,10 @@ fn offered(tree: &Tree, origin: DVec3, direction: DVec3, t_max: f64) -> Vec<u32>
 
 #[test]
 fn every_box_that_a_ray_meets_is_offered() {
-    for offset in [DVec3::ZERO, DVec3::new(148_376.0, 1234.0, -223_423.0), DVec3::splat(1e9)] {
-        let boxes = boxes(3000, offset, 5);
+    let offsets = [DVec3::ZERO, DVec3::new(148_376.0, 1234.0, -223_423.0), DVec3::splat(1e9)];
+    for (offset, boxes) in
+        offsets.into_iter().flat_map(|o| [boxes, small_boxes].map(|make| (o, make(3000, o, 5))))
+    {
         for accelerator in ALL {
             let tree = Tree::build(accelerator, boxes.len(), |i| boxes[i]);
             let mut random = Random::new(77);
@@ -88,9 +101,14 @@ fn all_that_a_ray_may_meet_is_offered_once() {
 
 #[test]
 fn few_boxes_are_opened_also_far_from_the_origin() {
+    let cases: [(Accelerator, Make, usize); 3] = [
+        (Accelerator::Bvh, small_boxes, 100),
+        (Accelerator::Bvh, boxes, 400),
+        (Accelerator::KdTree, boxes, 400),
+    ];
     for offset in [DVec3::ZERO, DVec3::splat(1e9)] {
-        let boxes = boxes(20_000, offset, 6);
-        for accelerator in [Accelerator::Bvh, Accelerator::KdTree] {
+        for (accelerator, make, most) in cases {
+            let boxes = make(20_000, offset, 6);
             let tree = Tree::build(accelerator, boxes.len(), |i| boxes[i]);
             let mut random = Random::new(78);
             let mut total = 0;
@@ -98,7 +116,7 @@ fn few_boxes_are_opened_also_far_from_the_origin() {
                 let origin = offset + vector(&mut random) * 15.0;
                 total += offered(&tree, origin, vector(&mut random).normalize(), 1e300).len();
             }
-            assert!(total / 200 < 400, "{accelerator:?}: {} boxes a ray", total / 200);
+            assert!(total / 200 < most, "{accelerator:?}: {} boxes a ray", total / 200);
         }
     }
 }
@@ -128,6 +146,8 @@ fn rays_whose_numbers_overflow_end() {
         .map(|b| Aabb { min: b.min * 1e-300, max: b.max * 1e-300 })
         .collect();
     for accelerator in ALL {
+        // A kd-tree names what straddles in several cells.
+        let most = if accelerator == Accelerator::KdTree { 32 * tiny.len() } else { tiny.len() };
         let tree = Tree::build(accelerator, tiny.len(), |i| tiny[i]);
         for (origin, direction) in [
             (DVec3::X * 1e300, -DVec3::X),
@@ -139,7 +159,7 @@ fn rays_whose_numbers_overflow_end() {
             let mut n_offered = 0;
             tree.traverse(origin, direction, f64::MAX, |range, t| {
                 n_offered += range.len();
-                assert!(n_offered <= 32 * tiny.len(), "{accelerator:?} {origin} {direction}: it goes on");
+                assert!(n_offered <= most, "{accelerator:?} {origin} {direction}: it goes on");
                 t
             });
         }
@@ -180,7 +200,9 @@ fn equal_boxes_and_needles_make_no_deep_tree() {
         assert_eq!(offered(&tree, DVec3::new(-1.0, 0.5, 0.5), DVec3::X, 1e9).len(), 20_000);
         let tree = Tree::build(accelerator, 20_000, needle);
         let mut all = offered(&tree, DVec3::new(0.0, 0.0, -1.0), DVec3::Z, 1e9);
-        all.dedup();
+        if accelerator == Accelerator::KdTree {
+            all.dedup();
+        }
         assert_eq!(all.len(), 20_000);
         assert!(tree.node_count() < 100_000, "{accelerator:?}: {}", tree.node_count());
     }
