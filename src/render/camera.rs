@@ -3,7 +3,7 @@
 //! Points of the picture are in pixels, x to the right and y down from the top left corner; the centre of the first pixel is
 //! (0.5, 0.5). The frame is right-handed: right = forward × up.
 
-use crate::math::elementary::{sin_cos, sin_cos_degrees, tan};
+use crate::math::elementary::{sin_cos, sin_cos_degrees, sin_cos_turns, tan};
 use crate::scene::{Camera, Projection};
 use crate::world::{Footprint, Ray, RayKind};
 use glam::{DVec2, DVec3};
@@ -143,7 +143,7 @@ impl View {
     fn through_lens(&self, origin: DVec3, toward: DVec3, sharp: f64, lens: DVec2) -> Ray {
         let mut ray = Ray { origin, direction: toward, t_max: f64::INFINITY, kind: RayKind::Camera };
         if self.has_lens() {
-            let (s, c) = sin_cos(TAU * lens.y);
+            let (s, c) = sin_cos_turns(lens.y);
             let r = self.lens_radius * lens.x.sqrt();
             let offset = self.right * (r * c) + self.up * (r * s);
             ray.origin += offset;

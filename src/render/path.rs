@@ -23,7 +23,7 @@ use super::settings::ResolvedSettings;
 use super::tiles::Watch;
 use crate::scene::Rgb;
 use crate::world::bsdf::{Bounce, Bsdf, Odds};
-use crate::world::light::{Ball, Choice, LightEnd, Lights};
+use crate::world::light::{Ball, Choice, Lights};
 use crate::world::texture::Sampled;
 use crate::world::{Hit, Ray, RayKind, SurfacePoint, World};
 pub(super) use gather::Matt;
@@ -190,28 +190,38 @@ impl Path {
 
     /// Takes a path to the end of its ray and aims it anew. False where it ends.
     fn follow(&self, world: &World, walk: &mut Walk<'_>) -> Sampled<bool> {
-        let Some(hit) = world.closest(&walk.ray) else {
+        // A hit and what it is made of are many numbers: they are looked at where they were written.
+        let found = world.closest(&walk.ray);
+        let Some(hit) = &found else {
             if !walk.stage.is_covered() {
                 walk.sum += walk.weight * walk.inside.kept(f64::INFINITY) * self.beyond(walk);
             }
             return Ok(false);
         };
+        match &Bsdf::at(world, hit, &walk.ray) {
+            Ok(bsdf) => self.arrive(world, hit, bsdf, walk),
+            Err(fault) => Err(*fault),
+        }
+    }
+
+    /// Adds what a surface sends along the path's ray, and goes on from there. False where the path ends.
+    #[inline]
+    fn arrive(&self, world: &World, hit: &Hit<'_>, bsdf: &Bsdf, walk: &mut Walk<'_>) -> Sampled<bool> {
         walk.note_length(hit.t);
-        let bsdf = Bsdf::at(world, &hit, &walk.ray)?;
-        walk.weight *= walk.inside.left(&bsdf, hit.t);
-        if walk.slips(&hit, &bsdf) {
+        walk.weight *= walk.inside.left(bsdf, hit.t);
+        if walk.slips(hit, bsdf) {
             return Ok(true);
         }
-        let emitted = bsdf.emitted(world, &hit);
+        let emitted = bsdf.emitted(world, hit);
         if emitted != Rgb::ZERO && !walk.stage.is_covered() {
-            walk.sum += walk.weight * emitted * self.share_of_meeting(world, &hit, walk);
+            walk.sum += walk.weight * emitted * self.share_of_meeting(world, hit, walk);
         }
-        if walk.segment >= self.depth || !walk.arrives(&bsdf) {
+        if walk.segment >= self.depth || !walk.arrives(bsdf) {
             return Ok(false);
         }
         match &self.photons {
-            Some(maps) if self.is_told(maps, &hit, &bsdf, walk) => Ok(walk.is_mirrored(&hit, &bsdf)),
-            _ => self.go_on(world, &hit, &bsdf, walk),
+            Some(maps) if self.is_told(maps, hit, bsdf, walk) => Ok(walk.is_mirrored(hit, bsdf)),
+            _ => self.go_on(world, hit, bsdf, walk),
         }
     }
 
@@ -289,18 +299,15 @@ impl Path {
     ) -> Sampled<Rgb> {
         let Some((i, often)) = self.choice.pick(which) else { return Ok(Rgb::ZERO) };
         let light = &self.lights.lights[i];
-        let Some(sample) = light.sample(hit.point, bsdf.normal, u) else { return Ok(Rgb::ZERO) };
+        let sample = light.sample(hit.point, bsdf.normal, u);
+        let Some(sample) = &sample else { return Ok(Rgb::ZERO) };
         let sent = bsdf.sent(sample.wi) * sample.weight / often;
         if sent == Rgb::ZERO {
             return Ok(sent);
         }
-        let met = match &sample.end {
-            LightEnd::Surface(point) => Some(point),
-            LightEnd::Point(_) | LightEnd::Infinity => None,
-        };
-        let share = match light.density(hit.point, bsdf.normal, sample.wi, met) {
-            Some(density) => balance(density * often, bsdf.density(odds, sample.wi)),
-            None => 1.0,
+        let share = match sample.pdf {
+            Some(density) if light.is_met() => balance(density * often, bsdf.density(odds, sample.wi)),
+            _ => 1.0,
         };
         if !light.shadow {
             return Ok(sent * share);

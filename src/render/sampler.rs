@@ -98,10 +98,10 @@ impl Sampler {
     pub fn next_set(&mut self) -> PointSet {
         let (seed, place) = (self.seed, self.place);
         let pixel = *self.pixel.get_or_insert_with(|| mix(mix(seed ^ GOLDEN).wrapping_add(mix(place))));
-        let key = mix(pixel.wrapping_add(u64::from(self.dimension).wrapping_mul(GOLDEN)));
+        let place = pixel.wrapping_add(u64::from(self.dimension).wrapping_mul(GOLDEN));
         self.dimension += 1;
         let Sampler { sample, kind, samples, .. } = *self;
-        PointSet { order: key as u32, scramble: mix(key ^ GOLDEN), sample, kind, samples }
+        PointSet { place, sample, kind, samples }
     }
 }
 
@@ -109,8 +109,8 @@ impl Sampler {
 /// continue one sequence, so that n points at each of N samples are as even as N·n points at one.
 #[derive(Clone, Copy, Debug)]
 pub struct PointSet {
-    order: u32,
-    scramble: u64,
+    /// Pixel and dimension, not mixed yet: many a set is not asked.
+    place: u64,
     sample: u32,
     kind: SamplerKind,
     samples: u32,
@@ -120,29 +120,33 @@ impl PointSet {
     /// Point i of the n taken at this camera sample, in (0, 1)².
     pub fn point(self, i: u32, n: u32) -> DVec2 {
         let index = self.sample.wrapping_mul(n).wrapping_add(i);
+        let key = mix(self.place);
+        let (order, scramble) = (key as u32, mix(key ^ GOLDEN));
         match self.kind {
             SamplerKind::Sobol => {
-                let (x, y) = sobol(owen(index, self.order));
-                let (x, y) = owen_both(x, y, self.scramble);
+                let (x, y) = sobol(owen(index, order));
+                let (x, y) = owen_both(x, y, scramble);
                 DVec2::new(unit(x), unit(y))
             }
-            SamplerKind::Stratified => self.in_cell(index, self.samples.saturating_mul(n)),
-            SamplerKind::Independent => self.anywhere(index),
+            SamplerKind::Stratified => {
+                in_cell(index, self.samples.saturating_mul(n), order, anywhere(index, scramble))
+            }
+            SamplerKind::Independent => anywhere(index, scramble),
         }
     }
+}
 
-    fn anywhere(self, index: u32) -> DVec2 {
-        let bits = mix(self.scramble.wrapping_add(u64::from(index).wrapping_mul(GOLDEN)));
-        DVec2::new(unit(bits as u32), unit((bits >> 32) as u32))
-    }
+fn anywhere(index: u32, scramble: u64) -> DVec2 {
+    let bits = mix(scramble.wrapping_add(u64::from(index).wrapping_mul(GOLDEN)));
+    DVec2::new(unit(bits as u32), unit((bits >> 32) as u32))
+}
 
-    /// A point of one of n cells, each taken once in an order of chance: as many columns as divide n and are at most its root.
-    fn in_cell(self, index: u32, n: u32) -> DVec2 {
-        let columns = (1..=n.isqrt()).rev().find(|d| n.is_multiple_of(*d)).unwrap_or(1);
-        let cell = shuffled(index % n, n, self.order);
-        let corner = DVec2::new(f64::from(cell % columns), f64::from(cell / columns));
-        (corner + self.anywhere(index)) / DVec2::new(f64::from(columns), f64::from(n / columns))
-    }
+/// A point of one of n cells, each taken once in an order of chance: as many columns as divide n and are at most its root.
+fn in_cell(index: u32, n: u32, order: u32, within: DVec2) -> DVec2 {
+    let columns = (1..=n.isqrt()).rev().find(|d| n.is_multiple_of(*d)).unwrap_or(1);
+    let cell = shuffled(index % n, n, order);
+    let corner = DVec2::new(f64::from(cell % columns), f64::from(cell / columns));
+    (corner + within) / DVec2::new(f64::from(columns), f64::from(n / columns))
 }
 
 /// A permutation of 0 … n − 1: one of the next power of two, gone on with until it is inside.

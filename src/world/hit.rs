@@ -53,26 +53,13 @@ pub struct SurfacePoint {
 }
 
 impl SurfacePoint {
-    /// The point moved clear of its surface, to the side that `direction` points to.
+    /// The point moved clear of its surface, to the side that `direction` points to: by the bound along the normal, and by what
+    /// rounding the sum may undo, which is half a step of each coordinate and is counted twice.
     #[inline]
     pub fn offset_toward(&self, direction: DVec3) -> DVec3 {
-        let distance = self.normal.abs().dot(self.error);
-        let offset =
-            if direction.dot(self.normal) < 0.0 { -self.normal * distance } else { self.normal * distance };
-        let moved = self.point + offset;
-        DVec3::new(away(moved.x, offset.x), away(moved.y, offset.y), away(moved.z, offset.z))
-    }
-}
-
-/// The next float in the direction of `offset`, so that rounding the sum cannot undo it.
-#[inline]
-fn away(x: f64, offset: f64) -> f64 {
-    if offset > 0.0 {
-        x.next_up()
-    } else if offset < 0.0 {
-        x.next_down()
-    } else {
-        x
+        let distance = self.normal.abs().dot(self.error + self.point.abs() * f64::EPSILON);
+        let along = if direction.dot(self.normal) < 0.0 { -distance } else { distance };
+        self.point + self.normal * along
     }
 }
 

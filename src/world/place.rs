@@ -4,7 +4,7 @@
 use super::aggregate::{Aggregate, Group, INHERITED, Instance, Item, mesh_material};
 use super::query::Candidate;
 use super::shape::csg::Solid;
-use super::shape::{LocalRay, Meet, Shape, carried};
+use super::shape::{LocalRay, Meet, Shape, carry};
 use super::{Hit, PrimitiveId, Provenance, World};
 use glam::DVec3;
 
@@ -87,31 +87,30 @@ impl World {
             local = local.into_local(transform)?.0;
         }
         let material = &self.materials[self.material_on(&path, shape, candidate) as usize];
-        let (surface, local_point, worn) = match (shape, path.aggregate) {
+        let (mut own_point, mut worn) = (None, None);
+        let mut surface = match (shape, path.aggregate) {
             (Some(Shape::Csg(csg)), _) => {
                 let part = csg.surface(&local, &candidate.meet);
-                (part.whole, part.own_point, None)
+                own_point = Some(part.own_point);
+                part.whole
             }
-            (Some(shape), _) => {
-                let surface = shape.surface(&local, &candidate.meet);
-                (surface, surface.point, None)
-            }
+            (Some(shape), _) => shape.surface(&local, &candidate.meet),
             (None, Aggregate::Mesh(mesh)) => {
-                let surface = mesh.shape.surface(candidate.id.part, &candidate.meet, material.bends_normal());
-                let worn = mesh.shape.worn_at(candidate.id.part, &candidate.meet);
-                (surface, worn.map_or(surface.point, |place| place.rest()), worn)
+                worn = mesh.shape.worn_at(candidate.id.part, &candidate.meet);
+                own_point = worn.map(|place| place.rest());
+                mesh.shape.surface(candidate.id.part, &candidate.meet, material.bends_normal())
             }
             (None, Aggregate::Group(_)) => return None,
         };
-        let world = carried(&surface, transforms);
-        let normal = on_side_of(world.normal, world.geometric_normal);
+        let local_point = own_point.unwrap_or(surface.point);
+        carry(&mut surface, transforms);
         Some(Hit {
             t,
-            point: world.point,
-            error: world.error,
-            geometric_normal: world.geometric_normal,
-            normal,
-            along_u: world.tangent,
+            point: surface.point,
+            error: surface.error,
+            geometric_normal: surface.geometric_normal,
+            normal: on_side_of(surface.normal, surface.geometric_normal),
+            along_u: surface.tangent,
             uv: surface.uv,
             local_point,
             worn,
@@ -125,6 +124,9 @@ impl World {
     fn material_on(&self, path: &Path<'_>, shape: Option<&Shape>, candidate: &Candidate) -> u32 {
         let id = candidate.id;
         let of_part = shape.map_or(INHERITED, |shape| part_material(shape, &candidate.meet));
+        if of_part != INHERITED {
+            return of_part;
+        }
         let mut placed = path.steps.iter().rev().map(|step| step.group.material[step.item as usize]);
         let own = match path.aggregate {
             Aggregate::Group(group) => group.material[id.shape as usize],
@@ -133,8 +135,10 @@ impl World {
                 _ => mesh.material_of(id.part),
             },
         };
-        let chosen = [of_part, own].into_iter().chain(placed).find(|&m| m != INHERITED);
-        chosen.unwrap_or(super::lower::DEFAULT_MATERIAL)
+        if own != INHERITED {
+            return own;
+        }
+        placed.find(|&m| m != INHERITED).unwrap_or(super::lower::DEFAULT_MATERIAL)
     }
 
     /// Where a primitive came from.

@@ -51,11 +51,11 @@ impl<'w> Query<'w> {
         any: bool,
     ) -> Option<Candidate> {
         let mut query = Query { world, kind, any, limit, found: None };
-        query.visit(&world.aggregates[0], Local { ray: *ray, per_world, instance: 0 });
+        query.visit(&world.aggregates[0], &Local { ray: *ray, per_world, instance: 0 });
         query.found
     }
 
-    fn visit(&mut self, aggregate: &Aggregate, local: Local) {
+    fn visit(&mut self, aggregate: &Aggregate, local: &Local) {
         match aggregate {
             Aggregate::Group(group) => self.visit_group(group, local),
             Aggregate::Mesh(mesh) => {
@@ -66,25 +66,26 @@ impl<'w> Query<'w> {
                         if let Some(meet) = mesh.shape.meet(position, &ray, self.limit * local.per_world) {
                             let part = mesh.shape.triangle_at(position);
                             let id = PrimitiveId { instance: local.instance, shape: 0, part };
-                            self.offer(id, 0, meet, &local);
+                            self.offer(id, 0, meet, local);
                         }
                     }
-                    self.rest(&local)
+                    self.rest(local)
                 });
             }
         }
     }
 
-    fn visit_group(&mut self, group: &Group, local: Local) {
+    #[inline]
+    fn visit_group(&mut self, group: &Group, local: &Local) {
         let limit = self.limit * local.per_world;
         group.tree.traverse(local.ray.origin, local.ray.direction, limit, |range, _| {
             for position in range {
-                self.visit_item(group, position, &local);
+                self.visit_item(group, position, local);
                 if self.any && self.found.is_some() {
                     break;
                 }
             }
-            self.rest(&local)
+            self.rest(local)
         });
     }
 
@@ -124,13 +125,13 @@ impl<'w> Query<'w> {
                     per_world: local.per_world * factor,
                     instance: local.instance.saturating_add(instance.first),
                 };
-                self.visit(&self.world.aggregates[instance.aggregate as usize], inside);
+                self.visit(&self.world.aggregates[instance.aggregate as usize], &inside);
             }
         }
     }
 
     /// A shape of a group, in its own space.
-    #[inline]
+    #[inline(always)]
     fn meet(&mut self, shape: &Shape, group: &Group, position: usize, inside: &Local) {
         let limit = self.limit * inside.per_world;
         let met = if self.any { shape.meet_any(&inside.ray, limit) } else { shape.meet(&inside.ray, limit) };

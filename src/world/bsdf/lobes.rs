@@ -1,7 +1,7 @@
 //! Lobes with a width: Phong's, Blinn's, and the microfacets of GGX. Values are BRDFs (1/sr) or densities; cosines are
 //! clamped, so that nothing is lit from behind and no power of a negative number is taken.
 
-use crate::math::elementary::{powf, powi, sin_cos};
+use crate::math::elementary::{powf, powi, sin_cos_turns};
 use crate::scene::Lobe;
 use crate::world::light::{frame, to_frame};
 use glam::{DVec2, DVec3};
@@ -22,7 +22,7 @@ pub fn specular(lobe: Lobe, q: f64, n: DVec3, wo: DVec3, wi: DVec3) -> f64 {
 pub fn choose_specular(lobe: Lobe, q: f64, n: DVec3, wo: DVec3, u: DVec2) -> DVec3 {
     let cosine = powf(u.x, 1.0 / (q + 1.0));
     let sine = ((1.0 - cosine) * (1.0 + cosine)).max(0.0).sqrt();
-    let (s, c) = sin_cos(TAU * u.y);
+    let (s, c) = sin_cos_turns(u.y);
     let local = DVec3::new(sine * c, sine * s, cosine);
     match lobe {
         Lobe::Phong => to_frame(super::fresnel::reflect(wo, n), local),
@@ -94,7 +94,7 @@ impl Ggx {
             DVec3::new(self.alpha * wo.dot(s), self.alpha * wo.dot(t), wo.dot(self.n)).normalize();
         let z = (1.0 - u.y) * (1.0 + stretched.z) - stretched.z;
         let r = (1.0 - z * z).max(0.0).sqrt();
-        let (sin, cos) = sin_cos(TAU * u.x);
+        let (sin, cos) = sin_cos_turns(u.x);
         let h = DVec3::new(r * cos, r * sin, z) + stretched;
         to_frame(self.n, DVec3::new(self.alpha * h.x, self.alpha * h.y, h.z.max(0.0)).normalize_or(DVec3::Z))
     }

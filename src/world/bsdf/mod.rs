@@ -19,7 +19,7 @@ use fresnel::{reflect, refract};
 use glam::{DVec2, DVec3};
 use lobes::Ggx;
 pub use scatter::{Bounce, Odds};
-use std::f64::consts::PI;
+use std::f64::consts::FRAC_1_PI;
 
 /// A material at a hit, seen along `wo`.
 #[derive(Clone, Debug)]
@@ -90,16 +90,17 @@ impl Bsdf {
         let at = TexturePoint::from(hit);
         let diffuse = texture::colour(&material.diffuse, &at)?;
         let normal = normal::facing(hit.normal * side, geometric, wo);
-        // Made where it is given back: a copy of so much just written waits for the writes.
-        let mut made = Ok(Bsdf { wo, geometric, normal, outside, diffuse, ..Bsdf::BARE });
-        if material.layers.is_some()
-            && let Ok(bsdf) = &mut made
-            && let Err(fault) =
-                bsdf.add_layers(material, &at).and_then(|()| bsdf.bend_normal(world, hit, ray, &at))
-        {
-            made = Err(fault);
-        }
-        made
+        let matt = Bsdf { wo, geometric, normal, outside, diffuse, ..Bsdf::BARE };
+        // Written where it is given back: a copy of so much just written waits for the writes.
+        if material.layers.is_none() { Ok(matt) } else { matt.with_layers(material, world, hit, ray) }
+    }
+
+    /// With what a material has beside its matt part.
+    fn with_layers(mut self, material: &Material, world: &World, hit: &Hit<'_>, ray: &Ray) -> Sampled<Bsdf> {
+        let at = TexturePoint::from(hit);
+        self.add_layers(material, &at)?;
+        self.bend_normal(world, hit, ray, &at)?;
+        Ok(self)
     }
 
     /// Reflects nothing.
@@ -198,7 +199,7 @@ impl Bsdf {
         if lit <= 0.0 {
             return Rgb::ZERO;
         }
-        let mut sent = self.diffuse / PI;
+        let mut sent = self.diffuse * FRAC_1_PI;
         if self.specular != Rgb::ZERO {
             sent += self.specular * lobes::specular(self.lobe, self.exponent, self.normal, self.wo, wi);
         }

@@ -9,7 +9,7 @@ use super::{Bsdf, Mirror, lobes};
 use crate::scene::Rgb;
 use crate::world::light::{cosine_hemisphere, to_frame};
 use glam::{DVec2, DVec3};
-use std::f64::consts::PI;
+use std::f64::consts::{FRAC_1_PI, PI};
 
 /// Where a path goes on from a surface.
 #[derive(Clone, Copy, Debug)]
@@ -94,7 +94,11 @@ impl Bsdf {
             return None;
         }
         let density = self.density(odds, direction);
-        let weight = self.sent(direction) / density;
+        let weight = match self.is_matt() {
+            // The density is the cosine's, and so is what is sent.
+            true => self.diffuse * (self.lit(direction) / direction.dot(self.normal)),
+            false => self.sent(direction) / density,
+        };
         let through = direction.dot(self.geometric) < 0.0;
         let useful = density > 0.0 && weight.is_finite() && weight != Rgb::ZERO;
         useful.then_some(Bounce { direction, weight, density: Some(density), through })
@@ -112,13 +116,18 @@ impl Bsdf {
         Some(Bounce { direction: way.direction, weight: way.weight / odds, density: None, through })
     }
 
-    /// By what each would send on if light came evenly from everywhere. Asked once a surface: they take the mirror's share.
-    pub fn odds(&self) -> Odds {
-        if matches!(self.mirror, Mirror::None)
-            && self.diffuse != Rgb::ZERO
+    /// Whether the matt part is all there is of it.
+    #[inline]
+    fn is_matt(&self) -> bool {
+        matches!(self.mirror, Mirror::None)
             && self.specular == Rgb::ZERO
             && self.transmit == Rgb::ZERO
-        {
+            && self.diffuse != Rgb::ZERO
+    }
+
+    /// By what each would send on if light came evenly from everywhere. Asked once a surface: they take the mirror's share.
+    pub fn odds(&self) -> Odds {
+        if self.is_matt() {
             return Odds { diffuse: 1.0, specular: 0.0, mirror: 0.0, through: 0.0 };
         }
         let share = match self.mirror {
@@ -147,7 +156,7 @@ impl Bsdf {
         if cosine <= 0.0 {
             return if odds.through > 0.0 { odds.through * self.frosted_density(wi) } else { 0.0 };
         }
-        let mut density = odds.diffuse * cosine / PI;
+        let mut density = odds.diffuse * cosine * FRAC_1_PI;
         if odds.specular > 0.0 {
             density +=
                 odds.specular * lobes::specular_density(self.lobe, self.exponent, self.normal, self.wo, wi);

@@ -1,6 +1,7 @@
 //! Tests of materials at a point.
 
 use super::*;
+use std::f64::consts::PI;
 
 fn seen(wo: DVec3) -> Bsdf {
     Bsdf { wo: wo.normalize(), ..Bsdf::BARE }

@@ -2,7 +2,7 @@
 //! sends there. Knows nothing of what they meet.
 
 use super::{AreaLight, Light, Source, cosine_hemisphere, frame, to_frame};
-use crate::math::elementary::sin_cos;
+use crate::math::elementary::sin_cos_turns;
 use crate::scene::Rgb;
 use crate::world::{Ray, RayKind, SurfacePoint, World};
 use glam::{DVec2, DVec3};
@@ -72,7 +72,7 @@ impl AreaLight {
         let normal = if inward { -at.normal } else { at.normal };
         let direction = to_frame(normal, cosine_hemisphere(way));
         let sides = if closed { 2.0 } else { 1.0 };
-        let power = self.emitted(&at, uv, 0.0) * (PI * area * sides);
+        let power = self.emitted(&at, uv.into(), 0.0) * (PI * area * sides);
         Some(Emitted { ray: ray(at.offset_toward(direction), direction), power })
     }
 }
@@ -83,7 +83,7 @@ fn ray(origin: DVec3, direction: DVec3) -> Ray {
 
 /// From the side that `toward` points to, onto the ball's disc across it.
 fn from_afar(toward: DVec3, irradiance: Rgb, place: DVec2, ball: &Ball) -> Emitted {
-    let ((s, c), r) = (sin_cos(TAU * place.y), ball.radius * place.x.sqrt());
+    let ((s, c), r) = (sin_cos_turns(place.y), ball.radius * place.x.sqrt());
     let (a, b) = frame(toward);
     let origin = ball.center + toward * (2.0 * ball.radius) + a * (r * c) + b * (r * s);
     Emitted { ray: ray(origin, -toward), power: irradiance * (PI * ball.radius * ball.radius) }
@@ -96,7 +96,7 @@ pub(super) fn sphere(u: DVec2) -> DVec3 {
 
 /// A unit vector of a cap about z, all alike; `height` is 1 less the least cosine.
 fn cap(u: DVec2, height: f64) -> DVec3 {
-    let ((s, c), z) = (sin_cos(TAU * u.y), 1.0 - height * u.x);
+    let ((s, c), z) = (sin_cos_turns(u.y), 1.0 - height * u.x);
     let r = (1.0 - z * z).max(0.0).sqrt();
     DVec3::new(r * c, r * s, z)
 }

@@ -12,13 +12,13 @@ mod surface;
 
 use super::hit::{Hit, SurfacePoint};
 use super::{Emitter, PlacedLight, PrimitiveId, Ray, RayKind, World};
-use crate::math::elementary::{sin_cos, sin_cos_degrees};
+use crate::math::elementary::{sin_cos_degrees, sin_cos_turns};
 use crate::scene::{LightSource, Rgb, Sky};
 pub use choice::Choice;
 pub use emission::{Ball, Emitted};
 use glam::{DVec2, DVec3};
 use picture::PictureSky;
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::PI;
 pub use surface::{AreaLight, emits_inward};
 
 /// All lights of a world, ready.
@@ -202,12 +202,19 @@ impl Light {
                 let weight = sky.radiance(wi) / pdf;
                 Some(LightSample { wi, weight, pdf: Some(pdf), end: LightEnd::Infinity })
             }
-            Source::Area(area) => {
-                let (mut sample, distance) = area.sample(at, normal, u)?;
-                sample.weight *= self.dimming(distance);
-                Some(sample)
-            }
+            Source::Area(area) => area.sample(at, normal, u, |distance| self.dimming(distance)),
         }
+    }
+
+    /// Whether a ray may meet what [`Light::sample`] chooses, with a density that [`Light::density`] knows.
+    #[inline]
+    pub fn is_met(&self) -> bool {
+        self.shadow
+            && match &self.source {
+                Source::Sky { .. } | Source::PictureSky(_) => true,
+                Source::Area(area) => area.knows_density(),
+                Source::Point { .. } | Source::Spot { .. } | Source::Sun { .. } => false,
+            }
     }
 
     /// Density per solid angle with which [`Light::sample`] chooses the direction `wi` from a point, given where a ray that way
@@ -289,7 +296,7 @@ fn from_sky(radiance: Rgb, normal: DVec3, u: DVec2) -> LightSample {
 
 /// A unit vector about z with density cos θ/π per solid angle. u in (0, 1)².
 pub fn cosine_hemisphere(u: DVec2) -> DVec3 {
-    let (s, c) = sin_cos(TAU * u.y);
+    let (s, c) = sin_cos_turns(u.y);
     let r = u.x.sqrt();
     DVec3::new(r * c, r * s, (1.0 - u.x).sqrt())
 }

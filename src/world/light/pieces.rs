@@ -3,7 +3,7 @@
 
 use super::SurfacePoint;
 use crate::math::Affine;
-use crate::math::elementary::{atan2, sin_cos};
+use crate::math::elementary::{atan2, sin_cos_turns};
 use crate::math::error::gamma;
 use crate::scene::{Cone, Torus};
 use glam::{DVec2, DVec3};
@@ -13,11 +13,11 @@ use std::f64::consts::{PI, TAU};
 #[derive(Clone, Debug)]
 pub(super) enum Piece {
     /// center ± a ± b.
-    Parallelogram { center: DVec3, a: DVec3, b: DVec3, normal: DVec3 },
+    Parallelogram { center: DVec3, a: DVec3, b: DVec3, normal: DVec3, area: f64 },
     /// center + a cos φ + b sin φ and all inside.
-    Ellipse { center: DVec3, a: DVec3, b: DVec3, normal: DVec3 },
+    Ellipse { center: DVec3, a: DVec3, b: DVec3, normal: DVec3, area: f64 },
     /// A corner and the edges from it; the corners' texture coordinates.
-    Triangle { corner: DVec3, edges: [DVec3; 2], normal: DVec3, uvs: Option<[DVec2; 3]> },
+    Triangle { corner: DVec3, edges: [DVec3; 2], normal: DVec3, uvs: Option<[DVec2; 3]>, area: f64 },
     /// A surface given by two parameters, under any affine map.
     Curved { shape: Curved, place: Box<Affine> },
 }
@@ -58,22 +58,21 @@ impl Piece {
     /// The point that u in (0, 1)² chooses.
     pub(super) fn point(&self, u: DVec2) -> PiecePoint {
         match self {
-            Piece::Parallelogram { center, a, b, normal } => {
+            Piece::Parallelogram { center, a, b, normal, area } => {
                 let s = u * 2.0 - 1.0;
-                flat(*center, *a * s.x, *b * s.y, *normal, 4.0 * a.cross(*b).length(), u)
+                flat(*center, *a * s.x, *b * s.y, *normal, *area, u)
             }
-            Piece::Ellipse { center, a, b, normal } => {
-                let (s, c) = sin_cos(TAU * u.y);
+            Piece::Ellipse { center, a, b, normal, area } => {
+                let (s, c) = sin_cos_turns(u.y);
                 let r = u.x.sqrt();
-                let area = TAU / 2.0 * a.cross(*b).length();
                 let uv = (DVec2::new(r * c, r * s) + 1.0) / 2.0;
-                flat(*center, *a * (r * c), *b * (r * s), *normal, area, uv)
+                flat(*center, *a * (r * c), *b * (r * s), *normal, *area, uv)
             }
-            Piece::Triangle { corner, edges: [e, f], normal, uvs } => {
+            Piece::Triangle { corner, edges: [e, f], normal, uvs, area } => {
                 let r = u.x.sqrt();
                 let (s, t) = (r * (1.0 - u.y), r * u.y);
                 let uv = uvs.map_or(DVec2::new(s, t), |[p, q, o]| p * (1.0 - s - t) + q * s + o * t);
-                flat(*corner, *e * s, *f * t, *normal, e.cross(*f).length() / 2.0, uv)
+                flat(*corner, *e * s, *f * t, *normal, *area, uv)
             }
             Piece::Curved { shape, place } => shape.point(place, u),
         }
@@ -110,7 +109,7 @@ impl Curved {
 
     /// Point, partial derivatives, outward normal, and a bound on the terms that the point was summed from.
     fn local(self, u: DVec2) -> (DVec3, DVec3, DVec3, DVec3, DVec3) {
-        let (s, c) = sin_cos(TAU * u.x);
+        let (s, c) = sin_cos_turns(u.x);
         match self {
             Curved::Sphere { center, radius } => {
                 let z = 2.0 * u.y - 1.0;
@@ -133,7 +132,7 @@ impl Curved {
             }
             Curved::Torus { torus, x, y } => {
                 let [major, minor] = torus.radii;
-                let (st, ct) = sin_cos(TAU * u.y);
+                let (st, ct) = sin_cos_turns(u.y);
                 let out = x * c + y * s;
                 let n = out * ct + torus.axis * st;
                 let r = major + minor * ct;

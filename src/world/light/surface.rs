@@ -8,11 +8,11 @@ use super::pieces::{Curved, Piece, PiecePoint, sphere_uv};
 use super::{LightEnd, LightSample, SurfacePoint, cosine_hemisphere, frame, to_frame};
 use crate::geometry::mesh::Mesh;
 use crate::math::Affine;
-use crate::math::elementary::sin_cos;
+use crate::math::elementary::sin_cos_turns;
 use crate::math::error::gamma;
 use crate::scene::{Cone, Rgb, Texture};
 use crate::world::emitter::{Emitter, EmitterShape};
-use crate::world::shape::upright;
+use crate::world::shape::{Uv, upright};
 use crate::world::texture::{self, TexturePoint};
 use glam::{DMat3, DVec2, DVec3};
 use std::f64::consts::{PI, TAU};
@@ -53,16 +53,32 @@ impl AreaLight {
         Some(AreaLight { form, emission, local_from_world: emitter.world_from_local.inverse() })
     }
 
-    /// Light toward a point from a point of the surface chosen by u, and the distance between them. `normal` is the
-    /// receiver's, on the side that is lit.
-    pub(super) fn sample(&self, at: DVec3, normal: DVec3, u: DVec2) -> Option<(LightSample, f64)> {
+    /// Light toward a point from a point of the surface chosen by u. `normal` is the receiver's, on the side that is lit; `dimming` is
+    /// what a distance leaves of the radiance.
+    #[inline]
+    pub(super) fn sample(
+        &self,
+        at: DVec3,
+        normal: DVec3,
+        u: DVec2,
+        dimming: impl Fn(f64) -> f64,
+    ) -> Option<LightSample> {
         match &self.form {
-            Form::Sphere { center, radius } => self.by_sphere(at, normal, *center, *radius, u),
+            Form::Sphere { center, radius } => self.by_sphere(at, normal, (*center, *radius), u, dimming),
             Form::Pieces { pieces, sums, solid, .. } => {
                 let (piece, share, u) = choose(pieces, sums, u);
                 let inside = solid.as_ref().is_some_and(|s| s.contains(self.local_from_world.point(at)));
-                self.by_piece(at, piece.point(u), share, inside)
+                self.by_piece(at, piece.point(u), share, inside, dimming)
             }
+        }
+    }
+
+    /// Whether the density of a choice is known where a ray meets the surface: not of curved pieces.
+    #[inline]
+    pub(super) fn knows_density(&self) -> bool {
+        match &self.form {
+            Form::Sphere { .. } => true,
+            Form::Pieces { flat, .. } => *flat,
         }
     }
 
@@ -116,13 +132,15 @@ impl AreaLight {
         }
     }
 
+    #[inline]
     fn by_piece(
         &self,
         at: DVec3,
         chosen: PiecePoint,
         share: f64,
         inside: bool,
-    ) -> Option<(LightSample, f64)> {
+        dimming: impl Fn(f64) -> f64,
+    ) -> Option<LightSample> {
         let to = chosen.at.point - at;
         let squared = to.length_squared();
         let distance = squared.sqrt();
@@ -132,11 +150,10 @@ impl AreaLight {
         if !(cosine > 0.0 && wi.is_finite()) {
             return None;
         }
-        let pdf = share * squared / (cosine * chosen.area);
-        let emitted = self.emitted(&chosen.at, chosen.uv, distance);
-        let weight = emitted / pdf;
-        let end = LightEnd::Surface(chosen.at);
-        weight.is_finite().then_some((LightSample { wi, weight, pdf: Some(pdf), end }, distance))
+        let solid_angle = cosine * chosen.area / (share * squared);
+        let weight = self.emitted(&chosen.at, chosen.uv.into(), distance) * (solid_angle * dimming(distance));
+        let (pdf, end) = (Some(1.0 / solid_angle), LightEnd::Surface(chosen.at));
+        weight.is_finite().then_some(LightSample { wi, weight, pdf, end })
     }
 
     /// From outside by the solid angle that the sphere fills, written so that it keeps its digits however small the sphere
@@ -145,17 +162,17 @@ impl AreaLight {
         &self,
         at: DVec3,
         normal: DVec3,
-        center: DVec3,
-        radius: f64,
+        (center, radius): (DVec3, f64),
         u: DVec2,
-    ) -> Option<(LightSample, f64)> {
+        dimming: impl Fn(f64) -> f64,
+    ) -> Option<LightSample> {
         let to = center - at;
         let squared = to.length_squared();
         let side = side(center, radius, at, normal);
         let (wi, pdf, distance) = if let Side::Outside(sin2) = side {
             let gap = gap(sin2);
             let x = gap * u.x; // 1 − cos of the angle from the axis
-            let (s, c) = sin_cos(TAU * u.y);
+            let (s, c) = sin_cos_turns(u.y);
             let sine2 = x * (2.0 - x);
             let r = sine2.sqrt();
             let away = squared.sqrt();
@@ -174,18 +191,20 @@ impl AreaLight {
         let n = (at + wi * distance - center).normalize_or(-wi);
         let error = (center.abs() + DVec3::splat(radius)) * gamma(12);
         let point = SurfacePoint { point: center + n * radius, error, normal: n };
-        let weight = self.emitted(&point, sphere_uv(self.local_from_world.vector(n)), distance) / pdf;
+        let emitted = self.emitted(&point, Uv::Around(self.local_from_world.vector(n)), distance);
+        let weight = emitted * (dimming(distance) / pdf);
         let end = LightEnd::Surface(point);
-        weight.is_finite().then_some((LightSample { wi, weight, pdf: Some(pdf), end }, distance))
+        weight.is_finite().then_some(LightSample { wi, weight, pdf: Some(pdf), end })
     }
 
-    pub(super) fn emitted(&self, at: &SurfacePoint, uv: DVec2, distance: f64) -> Rgb {
+    #[inline]
+    pub(super) fn emitted(&self, at: &SurfacePoint, uv: Uv, distance: f64) -> Rgb {
         match &self.emission {
             Texture::Constant(radiance) => *radiance,
             Texture::Pattern(_) => {
                 let local_point = self.local_from_world.point(at.point);
                 let (point, normal, t) = (at.point, at.normal, distance);
-                let point = TexturePoint { local_point, uv: uv.into(), point, normal, t, worn: None };
+                let point = TexturePoint { local_point, uv, point, normal, t, worn: None };
                 texture::colour(&self.emission, &point).unwrap_or(Rgb::ZERO)
             }
         }
@@ -223,6 +242,9 @@ fn gap(sin2: f64) -> f64 {
 
 /// The piece that u.x falls on, the share of the choice it has, and u with the digits that the choice left.
 fn choose<'a>(pieces: &'a [Piece], sums: &[f64], u: DVec2) -> (&'a Piece, f64, DVec2) {
+    if let [piece] = pieces {
+        return (piece, 1.0, u);
+    }
     let total = sums[sums.len() - 1];
     let at = u.x * total;
     let i = sums.partition_point(|s| *s <= at).min(pieces.len() - 1);
@@ -285,19 +307,22 @@ fn curved(shape: Curved, place: &Affine) -> Piece {
 
 fn parallelogram(center: DVec3, a: DVec3, b: DVec3, place: &Affine) -> Piece {
     let normal = place.normal(a.cross(b)).normalize_or_zero();
-    Piece::Parallelogram { center: place.point(center), a: place.vector(a), b: place.vector(b), normal }
+    let (a, b) = (place.vector(a), place.vector(b));
+    Piece::Parallelogram { center: place.point(center), a, b, normal, area: 4.0 * a.cross(b).length() }
 }
 
 fn ellipse(center: DVec3, normal: DVec3, radius: f64, place: &Affine) -> Piece {
     let (a, b) = upright(normal);
     let (a, b) = (place.vector(a * radius), place.vector(b * radius));
-    Piece::Ellipse { center: place.point(center), a, b, normal: place.normal(normal).normalize_or_zero() }
+    let (normal, area) = (place.normal(normal).normalize_or_zero(), PI * a.cross(b).length());
+    Piece::Ellipse { center: place.point(center), a, b, normal, area }
 }
 
 fn triangle([p, q, r]: [DVec3; 3], uvs: Option<[DVec2; 3]>, place: &Affine) -> Piece {
     let normal = place.normal((q - p).cross(r - p)).normalize_or_zero();
     let edges = [place.vector(q - p), place.vector(r - p)];
-    Piece::Triangle { corner: place.point(p), edges, normal, uvs }
+    let area = edges[0].cross(edges[1]).length() / 2.0;
+    Piece::Triangle { corner: place.point(p), edges, normal, uvs, area }
 }
 
 fn face(mesh: &Mesh, index: usize, place: &Affine) -> Piece {

@@ -16,7 +16,7 @@ mod walk;
 pub use build::Part;
 
 use super::mesh::MeshShape;
-use super::{EVERYTHING, LocalRay, Meet, Shape, Surface, carried, image_of};
+use super::{EVERYTHING, LocalRay, Meet, Shape, Surface, carry, image_of};
 use crate::diag::Span;
 use crate::math::error::gamma;
 use crate::math::{Aabb, Affine};
@@ -218,13 +218,14 @@ impl Csg {
     fn surface_of_part(&self, ray: &LocalRay, meet: &Meet) -> Option<(Surface, DVec3)> {
         let part = self.part(meet);
         let (local, factor) = part.local(ray)?;
-        let own = part.solid.surface(&local, &Meet { t: meet.t * factor, part: 0, ..*meet });
-        let mut surface = carried(&own, part.transform.iter());
+        let mut surface = part.solid.surface(&local, &Meet { t: meet.t * factor, part: 0, ..*meet });
+        let own_point = surface.point;
+        carry(&mut surface, part.transform.iter());
         if part.flipped {
             surface.geometric_normal = -surface.geometric_normal;
             surface.normal = -surface.normal;
         }
-        Some((surface, own.point))
+        Some((surface, own_point))
     }
 
     /// The box around it, in the space that `transform` maps to.

@@ -4,7 +4,7 @@
 //! wins is turned into a [`Surface`]. Surfaces carry a bound on the error of their point, large enough that a ray started
 //! beyond it does not meet the same shape at the same place again.
 
-mod carried;
+mod carry;
 mod cone;
 pub mod csg;
 mod cuboid;
@@ -21,7 +21,7 @@ mod tests;
 mod torus;
 pub mod triangle;
 
-pub use carried::carried;
+pub use carry::carry;
 pub use cone::Cone;
 pub use csg::Csg;
 pub use cuboid::Cuboid;
@@ -54,13 +54,15 @@ pub struct LocalRay {
 
 impl LocalRay {
     /// The ray, and how many of its distances make one of `direction`'s. None where the direction is 0 or not finite.
+    #[inline]
     pub fn new(origin: DVec3, direction: DVec3) -> Option<(LocalRay, f64)> {
-        let e = exponent(direction.abs().max_element());
-        if !(-1022..=1023).contains(&e) || !direction.is_finite() {
-            return None;
-        }
-        let unit = power_of_two(-e);
-        Some((LocalRay { origin, direction: direction * unit }, power_of_two(e)))
+        let size = direction.abs();
+        let larger = if size.x > size.y { size.x } else { size.y };
+        let e = exponent(if size.z > larger { size.z } else { larger });
+        let scaled = direction * power_of_two(-e);
+        // What is infinite is the largest; what is no number may hide behind what is.
+        let is_finite = (-1022..=1023).contains(&e) && !scaled.element_sum().is_nan();
+        is_finite.then_some((LocalRay { origin, direction: scaled }, power_of_two(e)))
     }
 
     /// The same ray in the space that `transform` maps from, and how many of its distances make one of these.

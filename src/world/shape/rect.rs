@@ -16,6 +16,8 @@ pub struct Rect {
     /// In the plane, with dual_a·a = 1 and dual_a·b = 0; and the other way round.
     dual_a: DVec3,
     dual_b: DVec3,
+    /// Of a point's place along a and b: a bound on its error.
+    doubt: f64,
 }
 
 impl Rect {
@@ -26,7 +28,8 @@ impl Rect {
         let (across_a, across_b) = (normal.cross(a), b.cross(normal));
         let dual_a = across_b / across_b.dot(a);
         let dual_b = across_a / across_a.dot(b);
-        (dual_a.is_finite() && dual_b.is_finite()).then_some(Rect { shape, normal, dual_a, dual_b })
+        let doubt = (a.length() + b.length()) * gamma(8);
+        (dual_a.is_finite() && dual_b.is_finite()).then_some(Rect { shape, normal, dual_a, dual_b, doubt })
     }
 
     pub(super) fn meet(&self, ray: &LocalRay, limit: f64) -> Option<Meet> {
@@ -46,7 +49,7 @@ impl Rect {
         Surface {
             point: center + across,
             error: (center.abs() + (a * meet.a).abs() + (b * meet.b).abs()) * gamma(4)
-                + DVec3::splat((a.length() + b.length()) * gamma(8)),
+                + DVec3::splat(self.doubt),
             geometric_normal: self.normal,
             normal: self.normal,
             tangent: a,

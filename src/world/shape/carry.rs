@@ -5,14 +5,15 @@ use crate::math::Affine;
 use crate::math::error::gamma;
 use glam::DVec3;
 
-/// A surface through transforms, the outermost first. Its error grows by the rounding on the way up and by what comes of going
+/// Takes a surface through transforms, the outermost first. Its error grows by the rounding on the way up and by what comes of going
 /// down the same way again, which the next ray will do: that part is measured, since composed inverses are inverses only up to the
 /// condition of the map.
 #[inline]
-pub fn carried<'t>(surface: &Surface, transforms: impl Iterator<Item = &'t Affine> + Clone) -> Surface {
+pub fn carry<'t>(surface: &mut Surface, transforms: impl Iterator<Item = &'t Affine> + Clone) {
     let mut all = transforms.clone();
-    let Some(first) = all.next() else { return *surface };
-    let up = all.fold(*first, |outer, inner| inner.then(&outer));
+    let Some(first) = all.next() else { return };
+    let several = all.next().map(|second| all.fold(second.then(first), |outer, inner| inner.then(&outer)));
+    let up = several.as_ref().unwrap_or(first);
     let point = up.point(surface.point);
     let mut back = point;
     let mut doubt_down = DVec3::ZERO;
@@ -23,19 +24,19 @@ pub fn carried<'t>(surface: &Surface, transforms: impl Iterator<Item = &'t Affin
     }
     let local_doubt = surface.error + (back - surface.point).abs() * 2.0 + doubt_down;
     let terms = absolute(&up.linear, surface.point.abs()) + up.translation.abs();
-    let geometric_normal = normal_through(&up, surface.geometric_normal);
-    Surface {
+    let geometric_normal = normal_through(up, surface.geometric_normal);
+    *surface = Surface {
         point,
         error: absolute(&up.linear, local_doubt) * (1.0 + gamma(4)) + terms * gamma(4),
         geometric_normal,
         normal: if surface.normal == surface.geometric_normal {
             geometric_normal
         } else {
-            normal_through(&up, surface.normal)
+            normal_through(up, surface.normal)
         },
         tangent: up.vector(surface.tangent),
         uv: surface.uv,
-    }
+    };
 }
 
 /// |M|·v for a vector of magnitudes.
