@@ -12,7 +12,6 @@ use args::{Command, Ogee};
 use clap::Parser;
 use speech::{Ended, Exit, Failure};
 use std::process::ExitCode;
-use std::sync::Mutex;
 
 /// Set to anything, keeps to instructions that every processor of the kind has.
 const BASELINE: &str = "OGEE_BASELINE";
@@ -25,7 +24,8 @@ fn main() -> ExitCode {
         Ok(ogee) => ogee,
         Err(error) => return usage(&error),
     };
-    let exit = match guarded(|| run(ogee.command)) {
+    answer_for_panics();
+    let exit = match run(ogee.command) {
         Ok(exit) => exit,
         Err(failure) => {
             speech::tell_failure(&failure);
@@ -61,27 +61,22 @@ fn usage(error: &clap::Error) -> ExitCode {
     if error.use_stderr() { Exit::Usage.into() } else { Exit::Done.into() }
 }
 
-/// Runs a command; a panic in it is a fault of Ogee, and is said so in a sentence instead of a stack of frames.
-fn guarded(command: impl FnOnce() -> Ended) -> Ended {
-    static CAUGHT: Mutex<Option<String>> = Mutex::new(None);
+/// A panic is a fault of Ogee: it is said so in a sentence instead of a stack of frames, and ends the process wherever it happens.
+/// Nothing is unwound, so what was being written stays beside its place under a name of its own.
+fn answer_for_panics() {
     std::panic::set_hook(Box::new(|panic| {
         let payload = panic.payload();
         let what = payload.downcast_ref::<&str>().copied();
         let what = what.or(payload.downcast_ref::<String>().map(String::as_str)).unwrap_or("no message");
         let place = panic.location().map_or(String::new(), |at| format!(" ({}:{})", at.file(), at.line()));
-        if let Ok(mut caught) = CAUGHT.lock() {
-            caught.get_or_insert(format!("{what}{place}"));
-        }
-    }));
-    std::panic::catch_unwind(std::panic::AssertUnwindSafe(command)).unwrap_or_else(|_| {
-        let what = CAUGHT.lock().ok().and_then(|mut caught| caught.take()).unwrap_or_default();
-        Err(Failure {
+        speech::tell_failure(&Failure {
             exit: Exit::Machine,
             message: format!(
-                "Ogee itself is at fault, not your scene: {what}\n\
+                "Ogee itself is at fault, not your scene: {what}{place}\n\
                  Please report it, with the scene and the command, to those who make Ogee {}.",
                 env!("CARGO_PKG_VERSION")
             ),
-        })
-    })
+        });
+        std::process::exit(Exit::Machine as i32);
+    }));
 }
