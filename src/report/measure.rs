@@ -1,6 +1,7 @@
 //! Timing variants against one another: interleaved blocks in one run, medians and paired ratios. Absolute nanoseconds of a
 //! busy machine mean little; ratios taken pair by pair survive.
 
+use crate::math::hex::hex_list;
 use std::hint::black_box;
 use std::time::Instant;
 
@@ -113,14 +114,14 @@ pub struct Errors {
 }
 
 impl Errors {
-    /// Takes an error; `input` is asked for only where it is the largest yet.
-    pub fn push(&mut self, error: f64, input: impl FnOnce() -> String) {
+    /// Takes an error; the input is written down only where it is the largest yet.
+    pub fn push(&mut self, error: f64, input: &[f64]) {
         if !error.is_finite() {
             self.not_finite += 1;
             return;
         }
         if self.worst.as_ref().is_none_or(|(e, _)| error > *e) {
-            self.worst = Some((error, input()));
+            self.worst = Some((error, hex_list(input)));
         }
         self.all.push(error);
     }
@@ -176,9 +177,10 @@ mod tests {
     #[test]
     fn the_worst_input_is_kept_and_nan_is_counted_apart() {
         let mut errors = Errors::default();
-        errors.push(1.0, || "a".into());
-        errors.push(f64::NAN, || "nan".into());
-        errors.push(3.0, || "b".into());
-        assert_eq!((errors.summary()[0], errors.worst_input(), errors.not_finite), (3.0, "b", 1));
+        errors.push(1.0, &[0.25]);
+        errors.push(f64::NAN, &[f64::NAN]);
+        errors.push(3.0, &[0.5]);
+        let worst = hex_list(&[0.5]);
+        assert_eq!((errors.summary()[0], errors.worst_input(), errors.not_finite), (3.0, &*worst, 1));
     }
 }

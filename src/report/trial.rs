@@ -176,14 +176,10 @@ type Judge<'a, const N: usize, O> = Box<dyn Fn(&[f64; N], &O) -> Verdict + 'a>;
 
 /// Variants on one case set of inputs of N numbers, with answers O.
 pub struct Trial<'a, const N: usize, O> {
-    plan: &'a Plan,
     subject: Subject,
     inputs: Vec<[f64; N]>,
     judge: Judge<'a, N, O>,
-    rows: Vec<Row>,
-    timed: Vec<Timed<'a>>,
-    /// Runs whose calls wait for one another, each with its row.
-    chains: Vec<(usize, Timed<'a>)>,
+    board: Board<'a>,
     /// What of an answer the next call of a chain waits for.
     waits_for: Option<fn(&O) -> f64>,
 }
@@ -203,9 +199,7 @@ impl<'a, const N: usize, O: Debug + 'a> Trial<'a, N, O> {
             }
             Some(_) => Vec::new(),
         };
-        let judge = Box::new(judge);
-        let (rows, timed, chains) = (Vec::new(), Vec::new(), Vec::new());
-        Trial { plan, subject, inputs, judge, rows, timed, chains, waits_for: None }
+        Trial { subject, inputs, judge: Box::new(judge), board: Board::of(plan), waits_for: None }
     }
 
     /// Times every variant that is [`run`](Trial::run) once more with calls that wait for this number of the answer before: no bit of it is
@@ -245,51 +239,96 @@ impl<'a, const N: usize, O: Debug + 'a> Trial<'a, N, O> {
         solve: impl Fn(&[f64; N]) -> O,
         work: impl FnMut() -> f64 + 'a,
     ) {
-        if self.plan.only.as_ref().is_some_and(|only| only.variant != label.name) || self.inputs.is_empty() {
-            return;
-        }
-        let is_judged = self.plan.counted == 0;
-        let bare = || Row::of(&self.subject, label.name, label.default, label.note);
-        self.rows.push(if is_judged { self.judged(label, solve) } else { bare() });
-        self.timed.push(Timed { name: label.name, calls, run: Box::new(work) });
+        self.judged(label, &solve, Timed { name: label.name, calls, run: Box::new(work) });
     }
 
     /// Times a variant that ran already once more, by `work` whose `calls` calls each wait for the answer before.
     pub fn chain(&mut self, label: Label, calls: usize, work: impl FnMut() -> f64 + 'a) {
-        if let Some(row) = self.rows.iter().position(|row| row.variant == label.name) {
-            self.chains.push((row, Timed { name: label.name, calls, run: Box::new(work) }));
+        self.board.chain(Timed { name: label.name, calls, run: Box::new(work) });
+    }
+
+    /// Only calls that are timed are compiled into what times them; these are not.
+    fn judged(&mut self, label: Label, solve: &dyn Fn(&[f64; N]) -> O, timed: Timed<'a>) {
+        let plan = self.board.plan;
+        if plan.only.as_ref().is_some_and(|only| only.variant != label.name) || self.inputs.is_empty() {
+            return;
+        }
+        let mut tally = Tally::of(Row::of(&self.subject, label.name, label.default, label.note));
+        if plan.counted == 0 {
+            for input in &self.inputs {
+                let answer = solve(input);
+                tally.take((self.judge)(input, &answer), input);
+                if plan.only.is_some() {
+                    tally.row.answer = format!("{answer:?}");
+                }
+            }
+        }
+        self.board.rows.push(tally.row());
+        self.board.timed.push(timed);
+    }
+
+    /// Times the variants in turn, or has their calls counted, and gives their rows.
+    pub fn finish(self) -> Vec<Row> {
+        self.board.finish()
+    }
+}
+
+/// A row in the making.
+struct Tally {
+    row: Row,
+    errors: Errors,
+}
+
+impl Tally {
+    fn of(row: Row) -> Tally {
+        Tally { row, errors: Errors::default() }
+    }
+
+    fn take(&mut self, verdict: Verdict, input: &[f64]) {
+        let row = &mut self.row;
+        row.n += 1;
+        row.missed += verdict.missed;
+        row.spurious += verdict.spurious;
+        row.work += verdict.work;
+        if (verdict.missed > 0 || verdict.spurious > 0) && row.failed_input.is_empty() {
+            row.failed_input = hex_list(input);
+        }
+        if let Some(error) = verdict.error {
+            self.errors.push(error, input);
         }
     }
 
-    fn judged(&self, label: Label, solve: impl Fn(&[f64; N]) -> O) -> Row {
-        let mut errors = Errors::default();
-        let mut row = Row::of(&self.subject, label.name, label.default, label.note);
-        for input in &self.inputs {
-            let answer = solve(input);
-            let verdict = (self.judge)(input, &answer);
-            row.missed += verdict.missed;
-            row.spurious += verdict.spurious;
-            row.work += verdict.work;
-            if (verdict.missed > 0 || verdict.spurious > 0) && row.failed_input.is_empty() {
-                row.failed_input = hex_list(input);
-            }
-            if let Some(error) = verdict.error {
-                errors.push(error, || hex_list(input));
-            }
-            if self.plan.only.is_some() {
-                row.answer = format!("{answer:?}");
-            }
-        }
-        row.n = self.inputs.len();
+    fn row(self) -> Row {
+        let Tally { mut row, errors } = self;
         row.work /= row.n.max(1) as f64;
         row.not_finite = errors.not_finite;
         row.worst_input = errors.worst_input().to_owned();
         [row.error_max, row.error_p99, row.error_mean] = errors.summary();
         row
     }
+}
 
-    /// Times the variants in turn, or has their calls counted, and gives their rows.
-    pub fn finish(mut self) -> Vec<Row> {
+/// The rows of a trial, and what times them. Knows neither inputs nor answers.
+struct Board<'a> {
+    plan: &'a Plan,
+    rows: Vec<Row>,
+    timed: Vec<Timed<'a>>,
+    /// Runs whose calls wait for one another, each with its row.
+    chains: Vec<(usize, Timed<'a>)>,
+}
+
+impl<'a> Board<'a> {
+    fn of(plan: &'a Plan) -> Board<'a> {
+        Board { plan, rows: Vec::new(), timed: Vec::new(), chains: Vec::new() }
+    }
+
+    fn chain(&mut self, timed: Timed<'a>) {
+        if let Some(row) = self.rows.iter().position(|row| row.variant == timed.name) {
+            self.chains.push((row, timed));
+        }
+    }
+
+    fn finish(mut self) -> Vec<Row> {
         if self.plan.counted > 0 {
             return self.count();
         }
