@@ -1,66 +1,84 @@
-//! Boxes and items as the builder holds them: laid out so that one minimum over eight lanes joins two boxes. Knows no tree.
+//! Boxes and items as the builder holds them: laid out so that two minima over four lanes join two boxes. Knows no tree.
 
 use crate::math::Aabb;
 use crate::world::bvh::frame::{Frame, round_down, round_up};
+use glam::{Vec4, Vec4Swizzles};
 
-/// Where the upper corner begins.
-const UPPER: usize = 4;
-/// The lane after the lower corner: free in a box, the number in an item.
-const NUMBER: usize = 3;
-
-/// A box of three axes in a tree's frame: lower x, y, z, a spare lane, then upper x, y, z with their signs turned, and another.
+/// A box of three axes in a tree's frame: its lower corner, and the upper one with its signs turned, so that both are joined by minima.
+/// The last lanes are spare.
 #[derive(Clone, Copy, Debug)]
 #[repr(align(32))]
-pub(super) struct Box32([f32; 8]);
+pub(super) struct Box32 {
+    lower: Vec4,
+    turned: Vec4,
+}
 
 impl Box32 {
     /// The identity of [`Box32::grow`].
-    pub const EMPTY: Box32 = Box32([f32::INFINITY; 8]);
+    pub const EMPTY: Box32 = Box32 { lower: Vec4::INFINITY, turned: Vec4::INFINITY };
 
     /// The smallest such box around a box.
     pub fn around(bounds: &Aabb, frame: &Frame) -> Box32 {
-        let min = frame.point(bounds.min).to_array().map(round_down);
-        let max = frame.point(bounds.max).to_array().map(round_up);
-        Box32([min[0], min[1], min[2], 0.0, -max[0], -max[1], -max[2], 0.0])
+        let (min, max) = (frame.point(bounds.min), frame.point(bounds.max));
+        Box32 {
+            lower: Vec4::new(round_down(min.x), round_down(min.y), round_down(min.z), 0.0),
+            turned: Vec4::new(-round_up(max.x), -round_up(max.y), -round_up(max.z), 0.0),
+        }
     }
 
     /// Joins another to this one.
     #[inline(always)]
     pub fn grow(&mut self, other: &Box32) {
-        for (a, b) in self.0.iter_mut().zip(&other.0) {
-            *a = if *b < *a { *b } else { *a };
-        }
+        *self = self.with(other);
+    }
+
+    /// Around both.
+    #[inline(always)]
+    pub fn with(&self, other: &Box32) -> Box32 {
+        Box32 { lower: self.lower.min(other.lower), turned: self.turned.min(other.turned) }
     }
 
     /// Half the area; of a box that is not empty.
     #[inline(always)]
     pub fn area(&self) -> f32 {
-        let d = |a: usize| self.upper(a) - self.lower(a);
-        d(0) * d(1) + d(1) * d(2) + d(2) * d(0)
+        let size = self.lower + self.turned;
+        let sides = size * size.yzxx();
+        sides.x + sides.y + sides.z
+    }
+
+    /// The same of three at once; the last lane means nothing.
+    #[inline(always)]
+    pub fn areas(boxes: &[Box32; 3]) -> Vec4 {
+        let [a, b, c] = [0, 1, 2].map(|i| boxes[i].lower + boxes[i].turned);
+        let x = Vec4::new(a.x, b.x, c.x, c.x);
+        let y = Vec4::new(a.y, b.y, c.y, c.y);
+        let z = Vec4::new(a.z, b.z, c.z, c.z);
+        x * y + y * z + z * x
     }
 
     /// Of the lower corner.
     #[inline(always)]
     pub fn lower(&self, axis: usize) -> f32 {
-        self.0[axis]
+        self.lower[axis]
     }
 
     /// Of the upper corner.
     #[inline(always)]
     pub fn upper(&self, axis: usize) -> f32 {
-        -self.0[axis + UPPER]
+        -self.turned[axis]
     }
 
     /// Twice the middle; the last lane means nothing.
     #[inline(always)]
-    pub fn middle(&self) -> [f32; 4] {
-        std::array::from_fn(|a| self.0[a] - self.0[a + UPPER])
+    pub fn middle(&self) -> Vec4 {
+        // A number in a spare lane would be a float so small that arithmetic with it is slow on some processors.
+        (self.lower - self.turned).xyzz()
     }
 
     /// The box that is one point.
     #[inline(always)]
-    pub fn of_point(p: [f32; 4]) -> Box32 {
-        Box32([p[0], p[1], p[2], p[3], -p[0], -p[1], -p[2], -p[3]])
+    pub fn of_point(p: Vec4) -> Box32 {
+        Box32 { lower: p, turned: -p }
     }
 }
 
@@ -81,7 +99,7 @@ pub(super) struct Item(Box32);
 impl Item {
     /// Item `number` with its box.
     pub fn new(mut bounds: Box32, number: u32) -> Item {
-        bounds.0[NUMBER] = f32::from_bits(number);
+        bounds.lower.w = f32::from_bits(number);
         Item(bounds)
     }
 }
@@ -98,7 +116,7 @@ impl Boxed for Item {
     }
 
     fn number(&self) -> u32 {
-        self.0.0[NUMBER].to_bits()
+        self.0.lower.w.to_bits()
     }
 }
 

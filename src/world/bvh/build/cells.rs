@@ -38,16 +38,18 @@ impl<'a> Cells<'a> {
     pub fn of(items: &'a [Item]) -> (Cells<'a>, Vec<Cell>) {
         let grid = Grid::over(&middles_of(items), MOST);
         let cell_of = |item: &Item| {
-            let [x, y, z, _] = grid.bins(item.bounds().middle());
+            let [x, y, z] = grid.bins(item.bounds().middle());
             (x * MOST + y) * MOST + z
         };
         let mut cells = vec![Cell { bounds: Box32::EMPTY, first: 0, count: 0 }; MOST * MOST * MOST];
-        let keys: Vec<u16> = items.iter().map(|item| cell_of(item) as u16).collect();
-        for (item, &key) in items.iter().zip(&keys) {
-            let cell = &mut cells[key as usize];
+        let enter = |item: &Item| {
+            let key = cell_of(item);
+            let cell = &mut cells[key];
             cell.bounds.grow(item.bounds());
             cell.count += 1;
-        }
+            key as u16
+        };
+        let keys: Vec<u16> = items.iter().map(enter).collect();
         let mut next = 0;
         for cell in &mut cells {
             (cell.first, next) = (next, next + cell.count);

@@ -17,91 +17,84 @@ pub(super) enum Start {
     Halves([Part; 2]),
 }
 
-/// What becomes of a part.
-#[derive(Clone, Copy)]
-pub(super) enum Child {
-    /// Not decided.
-    Open(Part),
-    /// A leaf.
-    Leaf(Part),
-    /// A node over its halves.
-    Node(Part, [Part; 2]),
-}
-
-impl Child {
-    /// The part.
-    pub fn part(&self) -> &Part {
-        match self {
-            Child::Open(part) | Child::Leaf(part) | Child::Node(part, _) => part,
-        }
-    }
-}
+/// The area of a part that shall not be split.
+const CLOSED: f32 = f32::NEG_INFINITY;
 
 /// Up to [`WIDTH`] children, in the order of their runs.
 pub(super) struct Children {
-    all: [Child; WIDTH],
+    parts: [Part; WIDTH],
+    /// Of those that may be split, else [`CLOSED`].
+    area: [f32; WIDTH],
     n: usize,
 }
 
 impl Children {
     /// Splits the largest part that can be until there are [`WIDTH`], or only leaves.
     pub fn of<T: Boxed>(run: &mut [T], start: Start, bins: &mut Bins) -> Children {
-        let mut children = match start {
-            Start::Whole(part) => Children { all: [Child::Open(part); WIDTH], n: 1 },
-            Start::Halves([left, right]) => {
-                let mut children = Children { all: [Child::Open(left); WIDTH], n: 2 };
-                children.all[1] = Child::Open(right);
-                children
-            }
-        };
+        let mut children = Children::new(start);
         while children.n < WIDTH {
-            let Some((i, part)) = children.largest() else { break };
-            let start: usize = children.all[..i].iter().map(|child| child.part().len).sum();
-            match part.split(&mut run[start..start + part.len], LANE_COST, bins) {
+            let Some(i) = children.largest() else { break };
+            let part = children.parts[i];
+            match part.split(&mut run[part.start..part.start + part.len], LANE_COST, bins) {
                 Some(halves) => children.replace(i, halves),
-                None => children.all[i] = Child::Leaf(part),
+                None => children.area[i] = CLOSED,
             }
         }
         children
     }
 
-    /// Decides those that are open: a node where a leaf would cost more. A small part is split to find out, and its halves are kept.
-    pub fn decide<T: Boxed>(&mut self, mut run: &mut [T], bins: &mut Bins) {
-        for child in &mut self.all[..self.n] {
-            let (own, rest) = std::mem::take(&mut run).split_at_mut(child.part().len);
-            run = rest;
-            if let Child::Open(part) = *child
-                && part.n_items <= MAX_LEAF
-            {
-                *child = part
-                    .split(own, NODE_COST, bins)
-                    .map_or(Child::Leaf(part), |halves| Child::Node(part, halves));
+    fn new(start: Start) -> Children {
+        match start {
+            Start::Whole(part) => {
+                let mut children = Children { parts: [part.at(0); WIDTH], area: [CLOSED; WIDTH], n: 1 };
+                children.area[0] = part.bounds.area();
+                children
+            }
+            Start::Halves([left, right]) => {
+                let mut children = Children { parts: [left.at(0); WIDTH], area: [CLOSED; WIDTH], n: 1 };
+                children.replace(0, [left.at(0), right.at(left.len)]);
+                children
             }
         }
     }
 
     /// In the order of their runs.
-    pub fn all(&self) -> &[Child] {
-        &self.all[..self.n]
+    pub fn parts(&self) -> &[Part] {
+        &self.parts[..self.n]
     }
 
-    fn replace(&mut self, i: usize, [left, right]: [Part; 2]) {
-        self.all.copy_within(i + 1..self.n, i + 2);
-        self.all[i] = Child::Open(left);
-        self.all[i + 1] = Child::Open(right);
+    /// What the node over a child's run is made of; none where a leaf costs less. A small part is split to find out, and its halves are kept.
+    pub fn below<T: Boxed>(&self, i: usize, run: &mut [T], bins: &mut Bins) -> Option<Start> {
+        let part = self.parts[i];
+        if self.area[i] == CLOSED {
+            None
+        } else if part.n_items > MAX_LEAF {
+            Some(Start::Whole(part))
+        } else {
+            part.split(run, NODE_COST, bins).map(Start::Halves)
+        }
+    }
+
+    fn replace(&mut self, i: usize, halves: [Part; 2]) {
+        for j in (i + 1..self.n).rev() {
+            self.parts[j + 1] = self.parts[j];
+            self.area[j + 1] = self.area[j];
+        }
+        for (j, half) in halves.into_iter().enumerate() {
+            self.parts[i + j] = half;
+            self.area[i + j] = half.bounds.area();
+        }
         self.n += 1;
     }
 
     /// The largest part that may be split; the first of equals.
-    fn largest(&self) -> Option<(usize, Part)> {
-        let mut best: Option<(usize, Part)> = None;
-        for (i, child) in self.all().iter().enumerate() {
-            if let Child::Open(part) = child
-                && best.is_none_or(|(_, largest)| part.bounds.area() > largest.bounds.area())
-            {
-                best = Some((i, *part));
-            }
+    fn largest(&self) -> Option<usize> {
+        let (mut best, mut area) = (0, self.area[0]);
+        for i in 1..WIDTH {
+            let is_larger = self.area[i] > area;
+            best = if is_larger { i } else { best };
+            area = if is_larger { self.area[i] } else { area };
         }
-        best
+        (area > CLOSED).then_some(best)
     }
 }

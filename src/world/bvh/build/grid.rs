@@ -1,6 +1,7 @@
 //! Equal bins along each axis, and which a middle is in.
 
 use super::boxes::Box32;
+use glam::Vec4;
 
 /// Most bins per axis.
 pub(super) const MOST: usize = 32;
@@ -12,14 +13,14 @@ const INSIDE: f32 = 1.0 - 1.0 / (1u32 << 20) as f32;
 /// Equal intervals along each axis.
 #[derive(Clone, Copy)]
 pub(super) struct Grid {
-    start: [f32; 4],
-    per_length: [f32; 4],
+    start: Vec4,
+    per_length: Vec4,
 }
 
 impl Grid {
     /// `count` bins a side over a box of middles, at most [`MOST`]. An axis along which they do not spread has one bin.
     pub fn over(middles: &Box32, count: usize) -> Grid {
-        let mut grid = Grid { start: [0.0; 4], per_length: [0.0; 4] };
+        let mut grid = Grid { start: Vec4::ZERO, per_length: Vec4::ZERO };
         for axis in 0..3 {
             let per_length = count as f32 * INSIDE / (middles.upper(axis) - middles.lower(axis));
             grid.start[axis] = middles.lower(axis);
@@ -28,17 +29,23 @@ impl Grid {
         grid
     }
 
-    /// The bin of a (doubled) middle on each axis; the last means nothing.
+    /// The bin of a (doubled) middle on each axis.
     #[inline(always)]
-    pub fn bins(&self, middle: [f32; 4]) -> [usize; 4] {
-        std::array::from_fn(|a| self.bin(middle[a], a))
+    pub fn bins(&self, middle: Vec4) -> [usize; 3] {
+        let [x, y, z, _] = self.whole(middle).to_array();
+        [x, y, z].map(|whole| whole.to_bits() as usize & (MOST - 1))
     }
 
-    /// The bin on one axis.
+    /// True where the bin on one axis is before another.
     #[inline(always)]
-    pub fn bin(&self, middle: f32, axis: usize) -> usize {
+    pub fn is_before(&self, middle: Vec4, axis: usize, bin: usize) -> bool {
+        self.whole(middle).cmplt(Vec4::splat(WHOLE + bin as f32)).bitmask() >> axis & 1 == 1
+    }
+
+    /// The bins on top of [`WHOLE`].
+    #[inline(always)]
+    fn whole(&self, middle: Vec4) -> Vec4 {
         // Half less, as the sum rounds to nearest.
-        let x = (middle - self.start[axis]) * self.per_length[axis] - 0.5;
-        (x + WHOLE).to_bits() as usize & (MOST - 1)
+        (middle - self.start) * self.per_length - Vec4::splat(0.5) + Vec4::splat(WHOLE)
     }
 }

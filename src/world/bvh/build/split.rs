@@ -3,6 +3,7 @@
 
 use super::boxes::{Box32, Boxed, bounds_of, middles_of};
 use super::grid::{Grid, MOST};
+use glam::Vec4;
 
 /// Runs up to this length are split in the best of all ways, of which there are 2ⁿ⁻¹ − 1.
 const HANDFUL: usize = 4;
@@ -16,62 +17,86 @@ fn bins_for(count: usize) -> usize {
     }
 }
 
-/// What is in each bin of each axis; kept between splits, as making it costs as much as a small split.
+/// What is in the bins of all three axes; kept between splits, as making it costs as much as a small split.
 pub(super) struct Bins {
-    bounds: [[Box32; MOST]; 3],
-    weight: [[u32; MOST]; 3],
+    bounds: [[Box32; 3]; MOST],
+    /// How many items, a lane for each axis.
+    weight: [[f32; 4]; MOST],
+}
+
+/// The cheapest plane along each axis: the first bin of the right half, and the cost; infinite where there is none.
+struct Planes {
+    bin: Vec4,
+    cost: Vec4,
 }
 
 impl Bins {
     /// Of no meaning yet.
     pub fn new() -> Bins {
-        Bins { bounds: [[Box32::EMPTY; MOST]; 3], weight: [[0; MOST]; 3] }
+        Bins { bounds: [[Box32::EMPTY; 3]; MOST], weight: [[0.0; 4]; MOST] }
     }
 
     fn fill<T: Boxed>(&mut self, run: &[T], grid: &Grid, n_bins: usize) {
-        for axis in 0..3 {
-            self.bounds[axis][..n_bins].fill(Box32::EMPTY);
-            self.weight[axis][..n_bins].fill(0);
-        }
+        self.bounds[..n_bins].fill([Box32::EMPTY; 3]);
+        self.weight[..n_bins].fill([0.0; 4]);
         for one in run {
             let bins = grid.bins(one.bounds().middle());
             for axis in 0..3 {
-                self.bounds[axis][bins[axis]].grow(one.bounds());
-                self.weight[axis][bins[axis]] += one.weight();
+                self.bounds[bins[axis]][axis].grow(one.bounds());
+                self.weight[bins[axis]][axis] += one.weight() as f32;
             }
         }
     }
 
-    /// The first bin of the right half and the cost of the cheapest split along an axis.
-    fn best_along(&self, axis: usize, n_bins: usize) -> Option<(usize, f32)> {
-        let (bounds, weight) = (&self.bounds[axis][..n_bins], &self.weight[axis][..n_bins]);
-        // NaN where there is nothing, so that no comparison is won.
-        let cost = |bounds: &Box32, n: u32| if n > 0 { bounds.area() * n as f32 } else { f32::NAN };
-        let mut right_cost = [0.0; MOST];
-        let (mut sum, mut n) = (Box32::EMPTY, 0);
+    /// Sweeps over the bins of all axes at once.
+    fn best(&self, n_bins: usize) -> Planes {
+        let (bounds, weight) = (&self.bounds[..n_bins], &self.weight[..n_bins]);
+        let mut right_cost = [Vec4::ZERO; MOST];
+        let mut sum = Sum::EMPTY;
         for bin in (1..n_bins).rev() {
-            sum.grow(&bounds[bin]);
-            n += weight[bin];
-            right_cost[bin] = cost(&sum, n);
+            sum.add(&bounds[bin], weight[bin]);
+            right_cost[bin] = sum.cost();
         }
-        let (mut sum, mut n) = (Box32::EMPTY, 0);
-        let mut best = (0, f32::INFINITY);
+        let mut sum = Sum::EMPTY;
+        let mut best = Planes { bin: Vec4::ZERO, cost: Vec4::INFINITY };
+        let mut at = Vec4::ZERO;
         for bin in 1..n_bins {
-            sum.grow(&bounds[bin - 1]);
-            n += weight[bin - 1];
-            let both = cost(&sum, n) + right_cost[bin];
-            if both < best.1 {
-                best = (bin, both);
-            }
+            sum.add(&bounds[bin - 1], weight[bin - 1]);
+            at += Vec4::ONE;
+            let both = sum.cost() + right_cost[bin];
+            let is_less = both.cmplt(best.cost);
+            best.cost = Vec4::select(is_less, both, best.cost);
+            best.bin = Vec4::select(is_less, at, best.bin);
         }
-        (best.0 > 0).then_some(best)
+        best
     }
 
     fn sum(&self, axis: usize, bins: std::ops::Range<usize>) -> Box32 {
-        self.bounds[axis][bins].iter().fold(Box32::EMPTY, |mut all, b| {
-            all.grow(b);
-            all
-        })
+        self.bounds[bins].iter().fold(Box32::EMPTY, |all, b| all.with(&b[axis]))
+    }
+}
+
+/// What lies on one side of a plane, for each axis.
+struct Sum {
+    bounds: [Box32; 3],
+    weight: Vec4,
+}
+
+impl Sum {
+    const EMPTY: Sum = Sum { bounds: [Box32::EMPTY; 3], weight: Vec4::ZERO };
+
+    #[inline(always)]
+    fn add(&mut self, bounds: &[Box32; 3], weight: [f32; 4]) {
+        for axis in 0..3 {
+            self.bounds[axis].grow(&bounds[axis]);
+        }
+        self.weight += Vec4::from_array(weight);
+    }
+
+    /// Area times items on each axis; NaN where there is nothing, ∞·0, so that no comparison is won.
+    #[inline(always)]
+    fn cost(&self) -> Vec4 {
+        Box32::areas(&self.bounds) * self.weight
     }
 }
 
@@ -101,35 +126,43 @@ impl Best {
         let n_bins = bins_for(run.len());
         let grid = Grid::over(&middles_of(run), n_bins);
         bins.fill(run, &grid, n_bins);
-        let along = |axis: usize| bins.best_along(axis, n_bins).map(|(bin, cost)| (axis, bin, cost));
-        let (axis, bin, cost) = (0..3).filter_map(along).min_by(|a, b| a.2.total_cmp(&b.2))?;
+        let planes = bins.best(n_bins);
+        let (bin, cost) = (planes.bin.to_array(), planes.cost.to_array());
+        let axis = (0..3).filter(|&a| bin[a] > 0.0).min_by(|&a, &b| cost[a].total_cmp(&cost[b]))?;
+        let (bin, cost) = (bin[axis] as usize, cost[axis]);
         let bounds = [bins.sum(axis, 0..bin), bins.sum(axis, bin..n_bins)];
         Some(Best { way: Way::Plane(grid, axis, bin), cost, bounds })
     }
 
     /// Over all sets that hold the first but not all.
     fn of_handful<T: Boxed>(run: &[T]) -> Option<Best> {
-        let mut best: Option<Best> = None;
-        for set in (1..(1u32 << run.len()) - 1).step_by(2) {
-            let mut bounds = [Box32::EMPTY; 2];
-            let mut weight = [0; 2];
-            for (i, one) in run.iter().enumerate() {
-                let half = usize::from(set >> i & 1 == 0);
-                bounds[half].grow(one.bounds());
-                weight[half] += one.weight();
-            }
-            let cost = bounds[0].area() * weight[0] as f32 + bounds[1].area() * weight[1] as f32;
-            if best.as_ref().is_none_or(|best| cost < best.cost) {
-                best = Some(Best { way: Way::Set(set), cost, bounds });
+        let all = (1usize << run.len()) - 1;
+        // Of every set: what it adds to that without its last.
+        let mut bounds = [Box32::EMPTY; 1 << HANDFUL];
+        let mut cost = [0.0; 1 << HANDFUL];
+        let mut weight = [0; 1 << HANDFUL];
+        for set in 1..all {
+            let last = set.ilog2();
+            let (one, rest) = (&run[last as usize], set ^ 1 << last);
+            bounds[set] = bounds[rest].with(one.bounds());
+            weight[set] = weight[rest] + one.weight();
+            cost[set] = bounds[set].area() * weight[set] as f32;
+        }
+        let mut best = (0, f32::INFINITY);
+        for set in (1..all).step_by(2) {
+            let both = cost[set] + cost[all ^ set];
+            if both < best.1 || best.0 == 0 {
+                best = (set, both);
             }
         }
-        best
+        let (set, cost) = best;
+        (set > 0).then(|| Best { way: Way::Set(set as u32), cost, bounds: [bounds[set], bounds[all ^ set]] })
     }
 
     fn partition<T: Boxed>(&self, run: &mut [T]) -> usize {
         match self.way {
             Way::Plane(grid, axis, bin) => {
-                partition(run, |one, _| grid.bin(one.bounds().middle()[axis], axis) < bin)
+                partition(run, |one, _| grid.is_before(one.bounds().middle(), axis, bin))
             }
             Way::Set(set) => partition(run, |_, i| set >> i & 1 == 1),
         }
@@ -168,6 +201,8 @@ pub(super) struct Part {
     /// Where its items begin among all items.
     pub first: usize,
     pub n_items: usize,
+    /// Where its run begins in that of the node above.
+    pub start: usize,
     /// Length of the run: fewer than the items where each stands for several.
     pub len: usize,
     pub bounds: Box32,
@@ -203,12 +238,17 @@ impl Part {
     /// All items.
     pub fn whole<T: Boxed>(run: &[T]) -> Part {
         let n_items = run.iter().map(|one| one.weight() as usize).sum();
-        Part { first: 0, n_items, len: run.len(), bounds: bounds_of(run), depth: 0 }
+        Part { first: 0, n_items, start: 0, len: run.len(), bounds: bounds_of(run), depth: 0 }
     }
 
     /// The same items as a run of another length.
     pub fn as_run(self, len: usize) -> Part {
         Part { len, ..self }
+    }
+
+    /// The same where its run begins elsewhere.
+    pub fn at(self, start: usize) -> Part {
+        Part { start, ..self }
     }
 
     /// Two halves, the run partitioned; none where a leaf is cheaper.
@@ -232,10 +272,16 @@ impl Part {
             None => halve(run),
         };
         let n_left = run[..len].iter().map(|one| one.weight() as usize).sum();
-        let half = |first, n_items, len, bounds| Part { first, n_items, len, bounds, depth: self.depth + 1 };
-        Some([
-            half(self.first, n_left, len, bounds[0]),
-            half(self.first + n_left, self.n_items - n_left, run.len() - len, bounds[1]),
-        ])
+        let depth = self.depth + 1;
+        let left = Part { n_items: n_left, len, bounds: bounds[0], depth, ..*self };
+        let right = Part {
+            first: self.first + n_left,
+            n_items: self.n_items - n_left,
+            start: self.start + len,
+            len: run.len() - len,
+            bounds: bounds[1],
+            depth,
+        };
+        Some([left, right])
     }
 }

@@ -2,7 +2,7 @@
 
 use super::boxes::{Boxed, Item};
 use super::cells::{Cell, Cells};
-use super::children::{Child, Children, Start};
+use super::children::{Children, Start};
 use super::split::{Bins, MAX_LEAF, Part};
 use crate::world::bvh::{Node, WIDTH};
 use rayon::prelude::*;
@@ -35,20 +35,13 @@ pub(super) fn grow(
 
 /// The node over items one by one, and all below it.
 fn over_items(items: &mut [Item], start: Start, nodes: &mut Vec<Node>, bins: &mut Bins) -> u32 {
-    let mut children = Children::of(items, start, bins);
-    children.decide(items, bins);
+    let children = Children::of(items, start, bins);
     let index = nodes.len();
     nodes.push(Node::EMPTY);
-    let mut rest = items;
-    for (slot, child) in children.all().iter().enumerate() {
-        let (own, after) = rest.split_at_mut(child.part().len);
-        rest = after;
-        let below = match *child {
-            Child::Leaf(_) => None,
-            Child::Open(part) => Some(over_items(own, Start::Whole(part), nodes, bins)),
-            Child::Node(_, halves) => Some(over_items(own, Start::Halves(halves), nodes, bins)),
-        };
-        fill(&mut nodes[index], slot, child.part(), below);
+    for (slot, part) in children.parts().iter().enumerate() {
+        let own = &mut items[part.start..part.start + part.len];
+        let below = children.below(slot, own, bins).map(|start| over_items(own, start, nodes, bins));
+        fill(&mut nodes[index], slot, part, below);
     }
     index as u32
 }
@@ -70,10 +63,10 @@ fn over_cells(
     nodes.push(Node::EMPTY);
     let mut runs = Vec::with_capacity(WIDTH);
     let (mut cells, mut order) = (cells, order);
-    for child in children.all() {
-        let (own, after) = cells.split_at_mut(child.part().len);
-        let (own_order, order_after) = order.split_at_mut(child.part().n_items);
-        runs.push((own, *child.part(), own_order));
+    for part in children.parts() {
+        let (own, after) = cells.split_at_mut(part.len);
+        let (own_order, order_after) = order.split_at_mut(part.n_items);
+        runs.push((own, *part, own_order));
         (cells, order) = (after, order_after);
     }
     let below = if rayon::current_num_threads() > 1 {
@@ -84,8 +77,8 @@ fn over_cells(
             .map(|(cells, part, order)| child_of_cells(sorted, cells, part, order, nodes, bins))
             .collect()
     };
-    for (slot, (child, below)) in children.all().iter().zip(below).enumerate() {
-        fill(&mut nodes[index], slot, child.part(), below);
+    for (slot, (part, below)) in children.parts().iter().zip(below).enumerate() {
+        fill(&mut nodes[index], slot, part, below);
     }
     index as u32
 }
