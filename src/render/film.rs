@@ -5,6 +5,7 @@ use super::features::{Features, Layers, Source};
 use super::sampler::RayCounts;
 use super::settings::Crop;
 use crate::diag::Span;
+use crate::math::colour::luminance;
 use crate::math::field::FaultKind;
 use crate::scene::Rgb;
 
@@ -59,6 +60,56 @@ pub struct Taken {
     pub most: u32,
     /// How many pixels had a small enough error; none where no error was asked for.
     pub enough: u64,
+    /// What dimming the brightest took; nothing where it was not asked for.
+    pub clamped: Clamped,
+}
+
+/// What was taken from samples that were brighter than asked for.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Clamped {
+    /// How many samples.
+    pub samples: u64,
+    /// Luminance of all samples as they were traced, and what was taken of it, in 2⁻³²: whole numbers, whose sum is the same in any
+    /// order.
+    all: u128,
+    taken: u128,
+}
+
+impl Clamped {
+    /// A sample with no colour above `most`, dimmed as a whole so that its hue stays. One that is not finite is left to whoever
+    /// counts those.
+    pub fn at_most(&mut self, most: f64, radiance: Rgb) -> Rgb {
+        if !radiance.is_finite() {
+            return radiance;
+        }
+        let light = luminance(radiance);
+        self.all += in_parts(light);
+        let brightest = radiance.max_element();
+        if brightest <= most {
+            return radiance;
+        }
+        let left = most / brightest;
+        self.samples += 1;
+        self.taken += in_parts(light * (1.0 - left));
+        radiance * left
+    }
+
+    /// The share of all light that was taken, 0 … 1.
+    pub fn share(self) -> f64 {
+        self.taken as f64 / self.all.max(1) as f64
+    }
+
+    fn merge(&mut self, other: Clamped) {
+        self.samples += other.samples;
+        self.all += other.all;
+        self.taken += other.taken;
+    }
+}
+
+/// Light in whole numbers of 2⁻³²; 2⁹⁶ at most, of which 2³² samples do not overflow a sum.
+fn in_parts(light: f64) -> u128 {
+    const MOST: f64 = (1u128 << 96) as f64;
+    (light * (1u64 << 32) as f64).min(MOST) as u128
 }
 
 impl Taken {
@@ -84,7 +135,9 @@ impl Taken {
             least,
             most: self.most.max(other.most),
             enough: self.enough + other.enough,
+            clamped: self.clamped,
         };
+        self.clamped.merge(other.clamped);
     }
 
     /// Samples a pixel; 0 without pixels.
@@ -208,7 +261,7 @@ impl Film {
     }
 }
 
-/// The samples of one pixel on the way to their mean: a box filter over the pixel.
+/// The samples of one pixel on the way to their mean.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct PixelSum {
     sum: Rgb,
@@ -243,6 +296,17 @@ mod tests {
         let mut pixel = PixelSum::default();
         (0..1 << 22).for_each(|_| pixel.add(Rgb::splat(0.1)));
         assert!((pixel.mean() - Rgb::splat(0.1)).abs().max_element() < 1e-10);
+    }
+
+    #[test]
+    fn a_clamp_keeps_the_hue_and_tells_what_it_took() {
+        let mut clamped = Clamped::default();
+        assert_eq!(clamped.at_most(2.0, Rgb::splat(1.0)), Rgb::splat(1.0));
+        assert_eq!(clamped.at_most(2.0, Rgb::new(8.0, 4.0, 0.0)), Rgb::new(2.0, 1.0, 0.0));
+        assert_eq!(clamped.at_most(2.0, Rgb::splat(f64::INFINITY)), Rgb::splat(f64::INFINITY));
+        let (whole, bright) = (luminance(Rgb::ONE), luminance(Rgb::new(8.0, 4.0, 0.0)));
+        assert_eq!(clamped.samples, 1);
+        assert!((clamped.share() - 0.75 * bright / (whole + bright)).abs() < 1e-8, "{}", clamped.share());
     }
 
     #[test]

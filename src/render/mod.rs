@@ -16,6 +16,7 @@ pub mod compare;
 pub mod denoise;
 pub mod features;
 pub mod film;
+mod filter;
 mod irradiance;
 mod medium;
 pub mod output;

@@ -66,6 +66,11 @@ pub struct Metadata {
     pub seed: u64,
     /// How even they are.
     pub sampler: String,
+    /// How a pixel gathers its samples.
+    pub filter: String,
+    /// Most radiance of a camera sample.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub clamp: Option<f64>,
     /// Width and height of the whole picture.
     pub size: [u32; 2],
     /// The estimated error at which a pixel was finished; `samples` are then the most.

@@ -5,6 +5,7 @@ use super::adaptive::Blocks;
 use super::camera::View;
 use super::features::{FeatureSum, Layers};
 use super::film::{Fault, Film, PixelSum, Report};
+use super::filter;
 use super::sampler::Sampler;
 use super::settings::ResolvedSettings;
 use super::tiles::Picture;
@@ -86,6 +87,10 @@ impl Pixel {
             Some(ray) => picture.tracer.radiance(picture.world, ray, &mut sampler),
             None => Rgb::ZERO,
         };
+        let radiance = match picture.settings.clamp {
+            Some(most) => report.taken.clamped.at_most(most, radiance),
+            None => radiance,
+        };
         let before = self.sum.non_finite;
         self.sum.add(radiance);
         if let (true, Some(ray)) = (self.sum.non_finite > before, ray) {
@@ -111,10 +116,13 @@ impl Pixel {
     }
 }
 
-/// The ray of a sample: through the pixel's centre for the only one, else through a point of its square.
+/// The ray of a sample: through the pixel's centre for the only one, else through a point that its filter chooses.
 fn camera_ray(picture: Picture<'_>, pixel: [u32; 2], sampler: &mut Sampler) -> Option<Ray> {
     let corner = DVec2::new(f64::from(pixel[0]), f64::from(pixel[1]));
-    let within = if picture.settings.samples == 1 { DVec2::splat(0.5) } else { sampler.next_2d() };
+    let within = match picture.settings.samples {
+        1 => DVec2::splat(0.5),
+        _ => filter::place(picture.settings.filter, sampler.next_2d()),
+    };
     let view: &View = picture.view;
     let lens = if view.has_lens() { sampler.next_2d() } else { DVec2::ZERO };
     view.ray(corner + within, lens)

@@ -2,7 +2,7 @@
 //! Every default of the `render` block stands here and nowhere else.
 
 use super::features::Layers;
-use crate::scene::{Accelerator, RenderSettings, Rgb, SamplerKind, ToneMap, TracerKind};
+use crate::scene::{Accelerator, PixelFilter, RenderSettings, Rgb, SamplerKind, ToneMap, TracerKind};
 
 /// Settings with nothing left open.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -21,6 +21,10 @@ pub struct ResolvedSettings {
     pub seed: u64,
     /// How even they are.
     pub sampler: SamplerKind,
+    /// How a pixel gathers its samples.
+    pub filter: PixelFilter,
+    /// Most radiance of a camera sample in any colour; none leaves every sample as it is.
+    pub clamp: Option<f64>,
     /// The tree.
     pub accelerator: Accelerator,
     /// In stops; of 8-bit pictures.
@@ -92,6 +96,8 @@ impl ResolvedSettings {
             depth: overrides.depth.or(scene.depth).unwrap_or(default_depth(tracer)).max(1),
             seed: overrides.seed.or(scene.seed).unwrap_or(0),
             sampler: overrides.sampler.or(scene.sampler).unwrap_or_default(),
+            filter: overrides.filter.or(scene.filter).unwrap_or_default(),
+            clamp: overrides.clamp.or(scene.clamp),
             accelerator: overrides.accelerator.or(scene.accelerator).unwrap_or_default(),
             exposure: overrides.exposure.or(scene.exposure).unwrap_or(0.0),
             tonemap: overrides.tonemap.or(scene.tonemap).unwrap_or_default(),

@@ -24,7 +24,7 @@ pub use object::{
     Cone, Csg, CsgOp, Disc, Hide, Implicit, MeshSource, Node, Object, Rect, Shape, Torus, Triangle,
 };
 pub use rig::{Figure, Motion, Pose, Reach, Rig, Stance};
-pub use settings::{Accelerator, RenderSettings, SamplerKind, ToneMap, TracerKind};
+pub use settings::{Accelerator, PixelFilter, RenderSettings, SamplerKind, ToneMap, TracerKind};
 pub use skin::{Armature, Skin, SkinSurface, Weights, divided_weights, unusable_weights};
 pub use solid::{open_mesh, solid_fault};
 pub use surface::{

@@ -19,6 +19,10 @@ pub struct RenderSettings {
     pub seed: Option<u64>,
     /// How even they are.
     pub sampler: Option<SamplerKind>,
+    /// How a pixel gathers its samples.
+    pub filter: Option<PixelFilter>,
+    /// Most radiance of a camera sample in any colour.
+    pub clamp: Option<f64>,
     /// The tree.
     pub accelerator: Option<Accelerator>,
     /// In stops.
@@ -85,6 +89,29 @@ impl SamplerKind {
             SamplerKind::Sobol => "sobol",
             SamplerKind::Stratified => "stratified",
             SamplerKind::Independent => "independent",
+        }
+    }
+}
+
+/// The reconstruction filters by name: by what a pixel weighs light around its centre.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum PixelFilter {
+    /// Evenly over its square.
+    #[default]
+    Box,
+    /// Falling off evenly to the neighbours' centres.
+    Tent,
+    /// A bell of half a pixel's deviation.
+    Gaussian,
+}
+
+impl PixelFilter {
+    /// Its word in the language.
+    pub fn word(self) -> &'static str {
+        match self {
+            PixelFilter::Box => "box",
+            PixelFilter::Tent => "tent",
+            PixelFilter::Gaussian => "gaussian",
         }
     }
 }

@@ -7,7 +7,7 @@ use ogee::math::Affine;
 use ogee::render::Tracer;
 use ogee::render::camera::View;
 use ogee::render::features::Layer;
-use ogee::render::film::Film;
+use ogee::render::film::{Clamped, Film};
 use ogee::render::passes::Passes;
 use ogee::render::sampler::Sampler;
 use ogee::render::settings::{Crop, ResolvedSettings};
@@ -441,4 +441,46 @@ fn more_samples_come_nearer_to_the_picture() {
     let (few, many) = (error(&at(2, 1)), error(&at(32, 1)));
     assert!(many < few / 3.0, "{few} {many}");
     assert_ne!(bits(&at(2, 1)), bits(&at(2, 2)), "the seed matters");
+}
+
+/// Radiance by column of a row of pixels across the edge of a white half, which lies between the fourth and the fifth.
+fn across_an_edge(change: impl FnOnce(&mut ResolvedSettings)) -> (Vec<f64>, Film) {
+    let half = rect(DVec3::new(-10.0, 0.0, 0.0), DVec3::X * 10.0, DVec3::Y * 10.0);
+    let world = world(vec![object(half, &glowing(1.0))]);
+    let mut settings = ResolvedSettings { tracer: TracerKind::Raycast, samples: 4096, ..settings([8, 8]) };
+    change(&mut settings);
+    let camera = Camera { projection: Projection::Orthographic, ..camera(DVec3::Z, DVec3::ZERO, 90.0) };
+    let film = picture(&world, &camera, &settings);
+    ((0..8).map(|x| film.pixel(x, 4).x).collect(), film)
+}
+
+#[test]
+fn filters_blur_an_edge_as_they_weigh() {
+    // What of each filter lies left of the edge: the areas under a tent, and the normal distribution at 1 and 3 deviations.
+    let (tent, one, three) = (0.875, 0.841_345, 0.998_650);
+    for (filter, wanted) in [
+        (PixelFilter::Box, [1.0, 1.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0]),
+        (PixelFilter::Tent, [1.0, 1.0, 1.0, tent, 1.0 - tent, 0.0, 0.0, 0.0]),
+        (PixelFilter::Gaussian, [1.0, 1.0, three, one, 1.0 - one, 1.0 - three, 0.0, 0.0]),
+    ] {
+        let (found, _) = across_an_edge(|settings| settings.filter = filter);
+        for (x, (found, wanted)) in found.iter().zip(wanted).enumerate() {
+            assert!((found - wanted).abs() < 3e-3, "{filter:?}, column {x}: {found}, not {wanted}");
+        }
+    }
+}
+
+#[test]
+fn a_clamp_dims_what_is_bright_and_tells_how_much() {
+    let (as_it_is, film) = across_an_edge(|_| ());
+    assert_eq!(
+        (as_it_is[0], film.report.taken.clamped),
+        (1.0, Clamped::default()),
+        "nothing is clamped unasked"
+    );
+    let (dimmed, film) = across_an_edge(|settings| settings.clamp = Some(0.25));
+    assert_eq!((dimmed[0], dimmed[7]), (0.25, 0.0));
+    let clamped = film.report.taken.clamped;
+    assert_eq!(clamped.samples, 32 * 4096);
+    assert!((clamped.share() - 0.75).abs() < 1e-8, "{}", clamped.share());
 }

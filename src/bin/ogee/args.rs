@@ -7,7 +7,7 @@ pub use accelerators::Accelerators;
 use clap::{Args, Parser, Subcommand, ValueEnum, ValueHint};
 use clap_complete::Shell;
 use ogee::render::features::Layer;
-use ogee::scene::{Accelerator, SamplerKind, TracerKind};
+use ogee::scene::{Accelerator, PixelFilter, SamplerKind, TracerKind};
 use std::ops::Range;
 use std::path::PathBuf;
 use std::str::FromStr;
@@ -176,6 +176,12 @@ pub struct Render {
     /// How even the random numbers of a pixel are
     #[arg(long, value_name = "SAMPLER", value_enum)]
     pub sampler: Option<Sampler>,
+    /// How a pixel weighs what lies around its centre
+    #[arg(long, value_name = "FILTER", value_enum)]
+    pub filter: Option<Filter>,
+    /// Dims camera samples to this radiance, and tells how much light that took
+    #[arg(long, value_name = "RADIANCE", value_parser = positive, allow_negative_numbers = true)]
+    pub clamp: Option<f64>,
     /// The tree that finds what a ray meets
     #[arg(long, value_name = "TREE", value_enum)]
     pub accelerator: Option<Tree>,
@@ -421,6 +427,26 @@ impl From<Sampler> for SamplerKind {
             Sampler::Sobol => SamplerKind::Sobol,
             Sampler::Stratified => SamplerKind::Stratified,
             Sampler::Independent => SamplerKind::Independent,
+        }
+    }
+}
+
+/// The reconstruction filters by the language's words.
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+#[value(rename_all = "lower")]
+#[allow(missing_docs, reason = "the names are the words of the language")]
+pub enum Filter {
+    Box,
+    Tent,
+    Gaussian,
+}
+
+impl From<Filter> for PixelFilter {
+    fn from(filter: Filter) -> Self {
+        match filter {
+            Filter::Box => PixelFilter::Box,
+            Filter::Tent => PixelFilter::Tent,
+            Filter::Gaussian => PixelFilter::Gaussian,
         }
     }
 }

@@ -4,7 +4,9 @@ use crate::diag::{Code, Diagnostic};
 use crate::lang::coerce;
 use crate::lang::table::{Block, Context, Kind, Outcome, Property, Role, Type};
 use crate::lang::value::Value;
-use crate::scene::{Accelerator, Camera, Projection, RenderSettings, SamplerKind, ToneMap, TracerKind};
+use crate::scene::{
+    Accelerator, Camera, PixelFilter, Projection, RenderSettings, SamplerKind, ToneMap, TracerKind,
+};
 use glam::DVec3;
 use std::sync::Arc;
 
@@ -173,6 +175,18 @@ pub static RENDER: Kind = Kind {
             "how even the random numbers of a pixel are: scrambled Sobol points, one in each cell of a grid, or each by itself",
         ),
         Property::new(
+            "filter",
+            &[&[Type::Word(&["box", "tent", "gaussian"])]],
+            "box",
+            "how a pixel weighs what lies around its centre: evenly over its square, falling off to the centres of its neighbours, or by a bell of half a pixel's deviation",
+        ),
+        Property::new(
+            "clamp",
+            &[&[Type::Positive]],
+            "",
+            "most radiance of a camera sample in any colour: brighter ones are dimmed to it, and how much light that took is told. None is dimmed where it is not said",
+        ),
+        Property::new(
             "accelerator",
             &[&[Type::Word(&["bvh", "kdtree", "none"])]],
             "bvh",
@@ -216,6 +230,8 @@ fn render(ctx: &mut dyn Context, block: Block) -> Outcome {
         depth: count("depth"),
         seed: block.integer("seed"),
         sampler: block.word("sampler").map(sampler),
+        filter: block.word("filter").map(filter),
+        clamp: block.number("clamp"),
         accelerator: block.word("accelerator").map(accelerator),
         exposure: block.number("exposure"),
         tonemap: block.word("tonemap").map(tonemap),
@@ -252,6 +268,14 @@ fn sampler(word: &str) -> SamplerKind {
         "stratified" => SamplerKind::Stratified,
         "independent" => SamplerKind::Independent,
         _ => SamplerKind::Sobol,
+    }
+}
+
+fn filter(word: &str) -> PixelFilter {
+    match word {
+        "tent" => PixelFilter::Tent,
+        "gaussian" => PixelFilter::Gaussian,
+        _ => PixelFilter::Box,
     }
 }
 

@@ -20,6 +20,7 @@ fn metadata() -> Metadata {
         depth: 8,
         seed: 9,
         sampler: "sobol".into(),
+        filter: "box".into(),
         size: [7, 5],
         ..Metadata::default()
     }

@@ -144,6 +144,8 @@ fn job(args: &Render) -> Job {
         depth: args.depth,
         seed: args.seed,
         sampler: args.sampler.map(Into::into),
+        filter: args.filter.map(Into::into),
+        clamp: args.clamp,
         accelerator: args.accelerator.map(Into::into),
         exposure: args.exposure,
         ..RenderSettings::default()

@@ -1,7 +1,7 @@
 //! What is told of a picture that was made: a line for a person, an object for a program.
 
 use super::render::Stopwatch;
-use ogee::render::film::{Film, Taken};
+use ogee::render::film::{Clamped, Film, Taken};
 use ogee::render::settings::ResolvedSettings;
 use ogee::session::picture::Prepared;
 use std::path::Path;
@@ -52,7 +52,20 @@ pub fn line(name: &str, film: &Film, settings: &ResolvedSettings, seconds: &Seco
 pub fn made(settings: &ResolvedSettings, taken: Taken, rays: u64, seconds: &Seconds) -> String {
     let [w, h] = [settings.crop.width, settings.crop.height];
     let samples = samples(settings, taken);
-    format!("{w}×{h}  {}  {samples}  {} rays", duration(seconds.total()), count(rays))
+    let clamped = clamped(settings, taken.clamped);
+    format!("{w}×{h}  {}  {samples}  {} rays{clamped}", duration(seconds.total()), count(rays))
+}
+
+/// What `--clamp` took, where it was asked for.
+fn clamped(settings: &ResolvedSettings, clamped: Clamped) -> String {
+    let Some(most) = settings.clamp else { return String::new() };
+    match clamped.samples {
+        0 => format!("  no sample above {most}"),
+        1 => format!("  1 sample dimmed to {most}, {:.2} % of the light", 100.0 * clamped.share()),
+        n => {
+            format!("  {} samples dimmed to {most}, {:.2} % of the light", count(n), 100.0 * clamped.share())
+        }
+    }
 }
 
 /// "4 samples a pixel"; where an error decided, "32 to 512 samples a pixel, 87.5 on average (0.3 % of the pixels want more)".
@@ -120,6 +133,9 @@ pub fn json(
         "depth": settings.depth,
         "seed": settings.seed,
         "sampler": settings.sampler.word(),
+        "filter": settings.filter.word(),
+        "clamp": settings.clamp,
+        "clamped": { "samples": taken.clamped.samples, "share": taken.clamped.share() },
         "finished": film.share_finished(),
         "denoised": film.denoised,
         "seconds": {

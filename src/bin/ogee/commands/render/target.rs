@@ -216,6 +216,8 @@ fn metadata(settings: &ResolvedSettings, sources: &SourceMap) -> Metadata {
         depth: settings.depth,
         seed: settings.seed,
         sampler: settings.sampler.word().to_owned(),
+        filter: settings.filter.word().to_owned(),
+        clamp: settings.clamp,
         size: settings.size,
         error: settings.error,
         ..Metadata::default()
