@@ -6,11 +6,13 @@
 use glam::DVec3;
 
 /// The exponent e of the power of two with 2^e ≤ |x| < 2^(e+1). For 0 and subnormal numbers −1023, for infinities and NaN 1024.
+#[inline]
 pub fn exponent(x: f64) -> i32 {
     ((x.to_bits() >> 52) & 0x7ff) as i32 - 1023
 }
 
 /// 2^e, with e clamped to the range of normal numbers, −1022 … 1023.
+#[inline]
 pub fn power_of_two(e: i32) -> f64 {
     f64::from_bits(((e.clamp(-1022, 1023) + 1023) as u64) << 52)
 }

@@ -10,6 +10,15 @@ pub fn keep_to_baseline() {
     BASELINE_ONLY.store(true, Ordering::Relaxed);
 }
 
+/// Whether AVX2 and fused products are there and may be used. Fused products round once: for what no result shows, such as tests of boxes.
+#[inline(always)]
+pub fn has_avx2_and_fma() -> bool {
+    #[cfg(target_arch = "x86_64")]
+    return has_avx2() && std::arch::is_x86_feature_detected!("fma");
+    #[cfg(not(target_arch = "x86_64"))]
+    false
+}
+
 /// Whether AVX2 is there and may be used.
 #[inline(always)]
 pub fn has_avx2() -> bool {

@@ -3,8 +3,10 @@
 use super::aggregate::{Aggregate, Group, Item};
 use super::shape::triangle::Sheared;
 use super::shape::{Csg, LocalRay, Meet, Shape};
+use super::tree::Tree;
 use super::{PrimitiveId, RayKind, World};
 use crate::scene::Hide;
+use std::ops::Range;
 
 /// The best meeting so far.
 #[derive(Clone, Copy, Debug)]
@@ -60,16 +62,17 @@ impl<'w> Query<'w> {
             Aggregate::Group(group) => self.visit_group(group, local),
             Aggregate::Mesh(mesh) => {
                 let ray = Sheared::new(&local.ray);
-                let limit = self.limit * local.per_world;
-                mesh.shape.tree.traverse(local.ray.origin, local.ray.direction, limit, |range, _| {
+                self.each(&mesh.shape.tree, local, |query, range| {
                     for position in range {
-                        if let Some(meet) = mesh.shape.meet(position, &ray, self.limit * local.per_world) {
-                            let part = mesh.shape.triangle_at(position);
-                            let id = PrimitiveId { instance: local.instance, shape: 0, part };
-                            self.offer(id, 0, meet, local);
+                        let limit = query.limit * local.per_world;
+                        let Some(meet) = mesh.shape.meet(position, &ray, limit) else { continue };
+                        let part = mesh.shape.triangle_at(position);
+                        let id = PrimitiveId { instance: local.instance, shape: 0, part };
+                        query.offer(id, 0, meet, local);
+                        if query.any {
+                            break;
                         }
                     }
-                    self.rest(local)
                 });
             }
         }
@@ -77,21 +80,32 @@ impl<'w> Query<'w> {
 
     #[inline]
     fn visit_group(&mut self, group: &Group, local: &Local) {
-        let limit = self.limit * local.per_world;
-        group.tree.traverse(local.ray.origin, local.ray.direction, limit, |range, _| {
+        self.each(&group.tree, local, |query, range| {
             for position in range {
-                self.visit_item(group, position, local);
-                if self.any && self.found.is_some() {
+                query.visit_item(group, position, local);
+                if query.any && query.found.is_some() {
                     break;
                 }
             }
-            self.rest(local)
         });
     }
 
-    /// What matters from here on, in local units; negative where nothing does.
-    fn rest(&self, local: &Local) -> f64 {
-        if self.any && self.found.is_some() { -1.0 } else { self.limit * local.per_world }
+    /// All that the ray may meet, near ones first; where any meeting will do in no order, until there is one.
+    #[inline(always)]
+    fn each(&mut self, tree: &Tree, local: &Local, test: impl Fn(&mut Self, Range<usize>)) {
+        let LocalRay { origin, direction } = local.ray;
+        let limit = self.limit * local.per_world;
+        if self.any {
+            tree.traverse_any(origin, direction, limit, |range| {
+                test(self, range);
+                self.found.is_none()
+            });
+        } else {
+            tree.traverse(origin, direction, limit, |range, _| {
+                test(self, range);
+                self.limit * local.per_world
+            });
+        }
     }
 
     #[inline]

@@ -1,16 +1,16 @@
 //! What a traversal has still to visit: a stack of which the first entries need no allocation and deeper ones spill.
 
-/// A stack; `N` entries are held in place.
-pub(super) struct Stack<T, const N: usize> {
+/// A stack; `N` entries are held in place, the rest in a vector that its owner lends: apart from it, so that the length stays in a register.
+pub(super) struct Stack<'s, T, const N: usize> {
     entries: [T; N],
     len: usize,
-    spilled: Vec<T>,
+    spilled: &'s mut Vec<T>,
 }
 
-impl<T: Copy + Default, const N: usize> Stack<T, N> {
+impl<'s, T: Copy + Default, const N: usize> Stack<'s, T, N> {
     #[inline(always)]
-    pub fn new() -> Self {
-        Stack { entries: [T::default(); N], len: 0, spilled: Vec::new() }
+    pub fn new(spilled: &'s mut Vec<T>) -> Self {
+        Stack { entries: [T::default(); N], len: 0, spilled }
     }
 
     #[inline(always)]
@@ -19,19 +19,19 @@ impl<T: Copy + Default, const N: usize> Stack<T, N> {
             self.entries[self.len] = entry;
             self.len += 1;
         } else {
-            self.spilled.push(entry);
+            spill(self.spilled, entry);
         }
     }
 
     #[inline(always)]
     pub fn pop(&mut self) -> Option<T> {
         if self.len == N
-            && let Some(entry) = self.spilled.pop()
+            && let Some(entry) = unspill(self.spilled)
         {
             return Some(entry);
         }
         self.len = self.len.checked_sub(1)?;
-        Some(self.entries[self.len])
+        self.entries.get(self.len).copied()
     }
 
     /// The last entry that still matters; those above it are dropped.
@@ -58,13 +58,26 @@ impl<T: Copy + Default, const N: usize> Stack<T, N> {
     }
 }
 
+#[cold]
+#[inline(never)]
+fn spill<T>(spilled: &mut Vec<T>, entry: T) {
+    spilled.push(entry);
+}
+
+#[cold]
+#[inline(never)]
+fn unspill<T>(spilled: &mut Vec<T>) -> Option<T> {
+    spilled.pop()
+}
+
 #[cfg(test)]
 mod tests {
     use super::Stack;
 
     #[test]
     fn entries_come_back_last_first_also_where_they_spill() {
-        let mut stack = Stack::<u32, 3>::new();
+        let mut spilled = Vec::new();
+        let mut stack = Stack::<u32, 3>::new(&mut spilled);
         for round in 1..8 {
             (0..round).for_each(|i| stack.push(i));
             let all: Vec<u32> = std::iter::from_fn(|| stack.pop()).collect();

@@ -79,7 +79,7 @@ impl Tree {
 
     /// Offers to `leaf` every range of [`Tree::order`] that the ray may meet before `t_max`, near ones first, some items perhaps more than once.
     /// `leaf` gives the distance beyond which nothing matters any more (so far); a negative one ends the traversal.
-    #[inline]
+    #[inline(always)]
     pub fn traverse(
         &self,
         origin: DVec3,
@@ -90,6 +90,23 @@ impl Tree {
         match self {
             Tree::Bvh(tree) => tree.traverse(origin, direction, t_max, leaf),
             Tree::KdTree(tree) => tree.traverse(origin, direction, t_max, leaf),
+        }
+    }
+
+    /// As [`Tree::traverse`] in no order, until `leaf` gives false.
+    #[inline(always)]
+    pub fn traverse_any(
+        &self,
+        origin: DVec3,
+        direction: DVec3,
+        t_max: f64,
+        mut leaf: impl FnMut(Range<usize>) -> bool,
+    ) {
+        match self {
+            Tree::Bvh(tree) => tree.traverse_any(origin, direction, t_max, leaf),
+            Tree::KdTree(tree) => {
+                tree.traverse(origin, direction, t_max, |range, t_max| if leaf(range) { t_max } else { -1.0 })
+            }
         }
     }
 

@@ -12,11 +12,8 @@ use entry::{Entry, Narrow};
 use glam::DVec3;
 use std::ops::Range;
 
-/// 1 + 2γ₃ in f32: what the far side of a slab is widened by, so that its three roundings never lose a ray that grazes the box
+/// 1 + 2γ₃: what the far side of a slab is widened by, so that its three roundings never lose a ray that grazes the box
 /// (Ize, *Robust BVH ray traversal*, 2013).
-const WIDEN: f32 = 1.0 + 6.0 * (f32::EPSILON / 2.0) * 1.000_001;
-
-/// The same in f64.
 const WIDEN_64: f64 = 1.0 + 2.0 * gamma(3);
 
 /// How far beyond the best hit boxes are still opened, relative to its distance: hides the rounding of both distances and keeps
@@ -61,64 +58,77 @@ fn clip_by(bounds: &Aabb, origin: DVec3, inverse: DVec3, t_max: f64) -> Option<(
     (near <= far).then_some((near, far))
 }
 
-/// Which children of a node a ray meets, as bits, and by child the bits of where it enters, of which the last three are the
-/// child's slot: numbers that order children, near ones first.
-type Met = (u32, [u32; WIDTH]);
+/// Which children of a node a ray meets, as bits, and where it enters each.
+type Met = (u32, [f32; WIDTH]);
 
 /// The bits of a distance that name a slot.
 const SLOT: u32 = WIDTH as u32 - 1;
 
-/// A child that is still to be visited: its distance and slot, and its node.
+/// A child by its node and slot.
+type Child = (u32, u32);
+
+/// A child that is still to be visited: where it is entered, of which the last three bits are its slot, and its node. Numbers that
+/// order children, near ones first.
 type Pending = u64;
 
+#[inline(always)]
+fn pending(near: f32, (node, slot): Child) -> Pending {
+    u64::from(near.to_bits() & !SLOT | slot) << 32 | u64::from(node)
+}
+
+#[inline(always)]
+fn child_of(entry: Pending) -> Child {
+    (entry as u32, (entry >> 32) as u32 & SLOT)
+}
+
 /// The children that are still to be visited.
-type Waiting = Stack<Pending, STACK>;
+type Waiting<'s> = Stack<'s, Pending, STACK>;
 
 /// The last child that begins before the limit.
 #[inline(always)]
-fn next(stack: &mut Waiting, limit: f32) -> Option<Pending> {
-    stack.next(|entry| f32::from_bits((entry >> 32) as u32 & !SLOT) <= limit)
+fn next(stack: &mut Waiting, limit: f32) -> Option<Child> {
+    let entry = stack.next(|entry| f32::from_bits((entry >> 32) as u32 & !SLOT) <= limit)?;
+    Some(child_of(entry))
 }
 
-/// Pushes the children that the ray meets but the nearest, farther ones first; gives the nearest.
+/// Pushes the children that the ray meets but one, which it gives: where they are to be `SORTED` the nearest, and farther ones first.
 #[inline(always)]
-fn enter(stack: &mut Waiting, node: u32, (mut mask, keys): Met) -> Option<Pending> {
+fn enter<const SORTED: bool>(stack: &mut Waiting, node: u32, (mut mask, near): Met) -> Option<Child> {
     if mask == 0 {
         return None;
     }
     let mut take = || {
-        let key = keys[(mask.trailing_zeros() & SLOT) as usize];
+        let slot = mask.trailing_zeros() & SLOT;
         mask &= mask - 1;
-        (u64::from(key) << 32 | u64::from(node), mask == 0)
+        (slot, mask == 0)
     };
-    let (first, is_last) = take();
+    // Most often there is one, which is found before its distance is.
+    let (slot, mut is_last) = take();
     if is_last {
-        return Some(first);
+        return Some((node, slot));
     }
-    let (second, is_last) = take();
-    let (mut nearest, other) = (first.min(second), first.max(second));
+    let key = |slot: u32| pending(if SORTED { near[slot as usize] } else { 0.0 }, (node, slot));
+    let mut nearest = key(slot);
     let bottom = stack.len();
-    stack.push(other);
-    if is_last {
-        return Some(nearest);
+    while !is_last {
+        let next;
+        (next, is_last) = take();
+        let next = key(next);
+        stack.push(if SORTED { nearest.max(next) } else { next });
+        nearest = if SORTED { nearest.min(next) } else { nearest };
     }
-    loop {
-        let (next, is_last) = take();
-        stack.push(nearest.max(next));
-        nearest = nearest.min(next);
-        if is_last {
-            break;
-        }
+    if SORTED {
+        // Where some spilled, their order is lost, which costs time only.
+        sort_far_first(stack.above(bottom));
     }
-    // Where some spilled, their order is lost, which costs time only.
-    sort_far_first(stack.above(bottom));
-    Some(nearest)
+    Some(child_of(nearest))
 }
 
 impl Tree {
     /// Offers to `leaf` every range of [`Tree::order`] that the ray may meet before `t_max`, near ones first. `leaf` gives the
-    /// distance beyond which nothing matters any more (so far); a negative one ends the traversal. No coordinate of the direction reaches 2.
-    #[inline]
+    /// distance beyond which nothing matters any more (so far); a negative one ends the traversal. The largest
+    /// coordinate of the direction is at least ½ and does not reach 2.
+    #[inline(always)]
     pub fn traverse(
         &self,
         origin: DVec3,
@@ -127,7 +137,22 @@ impl Tree {
         mut leaf: impl FnMut(Range<usize>, f64) -> f64,
     ) {
         if let Some(t_max) = self.offer_loose(t_max, &mut leaf) {
-            wide::walk(self, origin, direction, t_max, leaf);
+            wide::walk::<true>(self, [&origin, &direction], t_max, &mut leaf);
+        }
+    }
+
+    /// The same in no order, until `leaf` gives false.
+    #[inline(always)]
+    pub fn traverse_any(
+        &self,
+        origin: DVec3,
+        direction: DVec3,
+        t_max: f64,
+        mut leaf: impl FnMut(Range<usize>) -> bool,
+    ) {
+        let mut leaf = |range, t_max| if leaf(range) { t_max } else { -1.0 };
+        if let Some(t_max) = self.offer_loose(t_max, &mut leaf) {
+            wide::walk::<false>(self, [&origin, &direction], t_max, &mut leaf);
         }
     }
 
@@ -141,27 +166,30 @@ impl Tree {
     }
 }
 
-/// The traversal from where the ray enters. `meets` tests a node's children against a limit.
+/// The traversal from where the ray enters. `meets` tests a node's children against a limit. Near ones first where they are to be `SORTED`.
 #[inline(always)]
-fn walk(
+fn walk<const SORTED: bool>(
     tree: &Tree,
-    origin: DVec3,
-    direction: DVec3,
+    [origin, direction]: [&DVec3; 2],
     mut t_max: f64,
     meets: impl Fn(&Narrow, &Node, f32) -> Met,
-    mut leaf: impl FnMut(Range<usize>, f64) -> f64,
+    leaf: &mut impl FnMut(Range<usize>, f64) -> f64,
 ) {
     let Some(entry) = Entry::new(tree, origin, direction, t_max) else { return };
-    let (ray, nodes) = (Narrow::new(&entry), &tree.nodes);
+    let (ray, nodes) = (Narrow::new(&entry, direction), &tree.nodes[..]);
     let mut limit = entry.limit(t_max);
-    let mut stack = Waiting::new();
+    let mut spilled = Vec::new();
+    let mut stack = Waiting::new(&mut spilled);
     let mut at = 0;
     loop {
-        let mut waiting = enter(&mut stack, at, meets(&ray, &nodes[at as usize], limit))
-            .or_else(|| next(&mut stack, limit));
+        let met = meets(&ray, &nodes[at as usize], limit);
+        let mut waiting = enter::<SORTED>(&mut stack, at, met);
+        if waiting.is_none() {
+            waiting = next(&mut stack, limit);
+        }
         loop {
-            let Some(pending) = waiting else { return };
-            let (node, slot) = (&nodes[pending as u32 as usize], (pending >> 32) as u32 & SLOT);
+            let Some((node, slot)) = waiting else { return };
+            let node = &nodes[node as usize];
             let (child, count) = (node.child(slot as usize), node.count(slot as usize));
             if count == 0 {
                 // A ray of which a number is infinite or NaN meets absent children too, which name the first node.

@@ -1,8 +1,8 @@
-//! The traversal that tells of each node, for those who measure trees; by plain operations, which take the same way as the widest
-//! instructions.
+//! The traversal that tells of each node, for those who measure trees; by operations that every machine has and that round as the widest
+//! instructions do, so that all count alike.
 
 use super::walk;
-use super::wide::meets;
+use super::wide::meets_fused;
 use crate::world::bvh::Tree;
 use glam::DVec3;
 use std::cell::Cell;
@@ -20,10 +20,10 @@ impl Tree {
         let visits = Cell::new(0);
         let count = |ray: &_, node: &_, limit| {
             visits.set(visits.get() + 1);
-            meets(ray, node, limit)
+            meets_fused(ray, node, limit)
         };
         if let Some(t_max) = self.offer_loose(t_max, &mut leaf) {
-            walk(self, origin, direction, t_max, count, leaf);
+            walk::<true>(self, [&origin, &direction], t_max, count, &mut leaf);
         }
         visits.get()
     }

@@ -1,36 +1,56 @@
 //! Where a ray enters a tree, in the tree's frame, and the same narrowed to f32 for the test of boxes.
 
-use super::{FRAME_SIZE, MARGIN, SLACK, WIDEN, clip_by};
+use super::{FRAME_SIZE, MARGIN, SLACK, clip_by};
 use crate::world::bvh::Tree;
 use crate::world::bvh::frame::round_up;
 use glam::DVec3;
 
-/// A ray where it enters a tree's bounds, in the tree's frame.
+/// A ray where it starts, or where it enters a tree's bounds if it starts farther off, in the tree's frame.
 pub struct Entry {
     /// The point, each coordinate within `margin`.
     point: DVec3,
-    /// 1 over each coordinate of the direction.
-    inverse: DVec3,
     /// Bound on the roundings up to the point, and in an exact test of what is inside.
-    margin: f64,
+    margin: f32,
     /// s = (t − start)·scale: distances from the point in the frame, by distances of the ray.
     start: f64,
     scale: f64,
 }
 
+/// Rays that start within this of a frame's middle along each axis need not be brought nearer.
+const NEAR: f64 = 8.0;
+
+/// Bound on what the slab test's roundings shift planes by, in steps of half an ulp (2⁻²⁴): of an origin up to [`NEAR`], 8 in its cast, 8 in
+/// adding the margin and 8 in its product with the inverse; of a plane up to 2, 2 in its product where that is not fused; 10 of their difference for
+/// each of the cast of the direction, its inverse and the sum. Then [`MARGIN`] of such distances, far below one. A power of two above 56.
+const STEPS: f32 = 64.0 * f32::EPSILON / 2.0;
+
+/// A margin that holds every box, small enough that no product overflows.
+const MOST: f32 = (1u64 << 60) as f32;
+
 impl Entry {
-    /// None where the ray misses the bounds before `t_max`. No coordinate of its direction reaches 2.
+    /// None where the ray starts far off and misses the bounds before `t_max`. The largest coordinate of the direction is from ½ to 2.
     #[inline(always)]
-    pub fn new(tree: &Tree, origin: DVec3, direction: DVec3, t_max: f64) -> Option<Entry> {
-        let inverse = direction.recip();
-        let (start, _) = clip_by(&tree.bounds, origin, inverse, t_max)?;
+    pub fn new(tree: &Tree, origin: &DVec3, direction: &DVec3, t_max: f64) -> Option<Entry> {
         let scale = tree.frame.scale;
-        let from_center = origin - tree.frame.center;
+        let from_center = *origin - tree.frame.center;
+        let point = from_center * scale;
+        // Not so where one is NaN.
+        if (point.x.abs() <= NEAR) & (point.y.abs() <= NEAR) & (point.z.abs() <= NEAR) {
+            return Some(Entry { point, margin: STEPS, start: 0.0, scale });
+        }
+        Entry::from_afar(tree, origin, direction, t_max)
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn from_afar(tree: &Tree, origin: &DVec3, direction: &DVec3, t_max: f64) -> Option<Entry> {
+        let (start, _) = clip_by(&tree.bounds, *origin, direction.recip(), t_max)?;
+        let scale = tree.frame.scale;
+        let from_center = *origin - tree.frame.center;
         let travelled = from_center.abs().max_element() + 2.0 * start;
         Some(Entry {
-            point: (from_center + direction * start) * scale,
-            inverse,
-            margin: MARGIN * (travelled * scale + FRAME_SIZE),
+            point: (from_center + *direction * start) * scale,
+            margin: round_up(MARGIN * (travelled * scale + FRAME_SIZE)).min(MOST) + STEPS,
             start,
             scale,
         })
@@ -39,37 +59,37 @@ impl Entry {
     /// A float at or beyond the distance t in the tree's frame.
     #[inline(always)]
     pub fn limit(&self, t: f64) -> f32 {
-        round_up(((t - self.start) * SLACK + t * MARGIN) * self.scale * f64::from(WIDEN))
+        round_up(((t - self.start) * SLACK + t * MARGIN) * self.scale)
     }
 }
 
-/// Bound on what rounding the entry's point and its margin to f32, and widening by it, lose: three roundings of numbers up to 4.
-const POINT_STEP: f32 = 8.0 * f32::EPSILON;
+/// Coordinates of directions below this share of the largest are taken for it: a ray is moved by that share of the way, which no f32 in the frame can tell,
+/// and no product overflows.
+const LEAST: f32 = f32::from_bits((127 - 60) << 23);
 
 /// A ray in a tree's frame, narrowed so that it meets more boxes rather than fewer.
 #[derive(Default)]
 pub struct Narrow {
-    /// Where the planes that the ray enters through are measured from, and those it leaves through.
-    pub near_origin: [f32; 3],
-    pub far_origin: [f32; 3],
-    /// Of the direction; widened for the far planes.
-    pub near_inverse: [f32; 3],
-    pub far_inverse: [f32; 3],
+    /// 1 over each coordinate of the direction.
+    pub inverse: [f32; 3],
+    /// Minus that times the origin, moved outward: for planes that the ray enters through, and for those it leaves through.
+    pub near: [f32; 3],
+    pub far: [f32; 3],
     /// Which coordinates of the direction are negative, as bits.
     negative: u32,
 }
 
 impl Narrow {
     #[inline(always)]
-    pub fn new(entry: &Entry) -> Narrow {
+    pub fn new(entry: &Entry, direction: &DVec3) -> Narrow {
         let mut ray = Narrow::default();
-        let around = entry.margin as f32 * WIDEN + POINT_STEP;
         for a in 0..3 {
-            let (point, inverse) = (entry.point[a] as f32, entry.inverse[a] as f32);
-            let toward = around.copysign(inverse);
-            (ray.near_origin[a], ray.far_origin[a]) = (point + toward, point - toward);
-            ray.negative |= u32::from(inverse.is_sign_negative()) << a;
-            (ray.near_inverse[a], ray.far_inverse[a]) = (inverse, inverse * WIDEN);
+            let (point, along) = (entry.point[a] as f32, direction[a] as f32);
+            let inverse = along.signum() / along.abs().max(LEAST);
+            let toward = entry.margin.copysign(along);
+            ray.inverse[a] = inverse;
+            (ray.near[a], ray.far[a]) = (-(point + toward) * inverse, -(point - toward) * inverse);
+            ray.negative |= u32::from(along.is_sign_negative()) << a;
         }
         ray
     }
