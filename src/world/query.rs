@@ -2,6 +2,7 @@
 
 use super::aggregate::{Aggregate, Group, Item};
 use super::shape::triangle::Sheared;
+use super::shape::triangle::leaf::Asked;
 use super::shape::{Csg, LocalRay, Meet, Shape};
 use super::tree::Tree;
 use super::{PrimitiveId, RayKind, World};
@@ -63,15 +64,11 @@ impl<'w> Query<'w> {
             Aggregate::Mesh(mesh) => {
                 let ray = Sheared::new(&local.ray);
                 self.each(&mesh.shape.tree, local, |query, range| {
-                    for position in range {
-                        let limit = query.limit * local.per_world;
-                        let Some(meet) = mesh.shape.meet(position, &ray, limit) else { continue };
+                    let asked = Asked { ray: &ray, limit: query.limit * local.per_world, any: query.any };
+                    if let Some((position, meet)) = mesh.shape.meet_nearest(range, &asked) {
                         let part = mesh.shape.triangle_at(position);
                         let id = PrimitiveId { instance: local.instance, shape: 0, part };
                         query.offer(id, 0, meet, local);
-                        if query.any {
-                            break;
-                        }
                     }
                 });
             }

@@ -1,5 +1,6 @@
 //! Meshes as rays meet them: shared vertices, triangles in the order of their tree.
 
+use super::triangle::leaf::{self, Asked};
 use super::triangle::{Corners, Sheared, bounds_of, cut, surface_of};
 use super::{LocalRay, Meet, Surface};
 use crate::geometry::mesh::Mesh;
@@ -7,6 +8,7 @@ use crate::geometry::skin::Influences;
 use crate::scene::{Accelerator, Armature};
 use crate::world::tree::Tree;
 use glam::DVec3;
+use std::ops::Range;
 use std::sync::Arc;
 
 /// A mesh and its tree.
@@ -14,8 +16,8 @@ use std::sync::Arc;
 pub struct MeshShape {
     /// The mesh.
     pub mesh: Arc<Mesh>,
-    /// Its triangles in the tree's order, so that a leaf reads consecutive memory.
-    triangles: Vec<[u32; 3]>,
+    /// Of its triangles in the tree's order, so that a leaf reads consecutive memory.
+    corners: leaf::Corners,
     /// Over the triangles.
     pub tree: Tree,
     /// Of a skin, what it was before its bones moved it.
@@ -73,14 +75,26 @@ impl MeshShape {
         let of = |i: usize| corners(&mesh, mesh.triangles[i]);
         let tree =
             Tree::build_clipped(accelerator, count, |i| bounds_of(of(i)), |i, cell| cut::cut(of(i), cell));
-        let triangles = tree.order().iter().map(|&i| mesh.triangles[i as usize]).collect();
-        MeshShape { mesh, triangles, tree, worn: worn.map(Box::new) }
+        let triangles = tree.order().iter().map(|&i| mesh.triangles[i as usize]);
+        let corners = leaf::Corners::new(&mesh.positions, triangles);
+        MeshShape { mesh, corners, tree, worn: worn.map(Box::new) }
     }
 
     /// A ray against the triangle at a position of the tree's order.
     #[inline(always)]
     pub fn meet(&self, position: usize, ray: &Sheared, limit: f64) -> Option<Meet> {
-        ray.meet(places(&self.mesh, self.triangles[position]), limit)
+        ray.meet(self.corners_at(position).each_ref(), limit)
+    }
+
+    /// The nearest meeting of a ray with triangles of the tree's order, or any, and its position; of equally near ones the first triangle.
+    #[inline]
+    pub fn meet_nearest(&self, range: Range<usize>, asked: &Asked) -> Option<(usize, Meet)> {
+        self.corners.nearest(&self.mesh.positions, range, asked, |i| self.triangle_at(i))
+    }
+
+    #[inline(always)]
+    fn corners_at(&self, position: usize) -> [DVec3; 3] {
+        self.corners.at(&self.mesh.positions, position)
     }
 
     /// Every meeting with t > 0, ascending, ties by triangle: as [`super::Shape::crossings`], with the triangle's number as the face.
@@ -93,7 +107,7 @@ impl MeshShape {
         self.tree.traverse_all(ray.origin, ray.direction, |range| {
             for position in range {
                 if let Some(meet) = self.meet(position, &sheared, f64::MAX) {
-                    let owned = sheared.is_owner(places(&self.mesh, self.triangles[position]));
+                    let owned = sheared.is_owner(self.corners_at(position).each_ref());
                     let meet = Meet { face: self.triangle_at(position), ..meet };
                     out.extend(std::iter::repeat_n(meet, if owned { 1 } else { 2 }));
                 }
@@ -104,6 +118,7 @@ impl MeshShape {
     }
 
     /// The triangle at a position of the tree's order, by its number in the mesh.
+    #[inline]
     pub fn triangle_at(&self, position: usize) -> u32 {
         self.tree.order()[position]
     }
@@ -125,12 +140,6 @@ impl MeshShape {
         };
         surface_of(corners(mesh, indices), data, meet, bent)
     }
-}
-
-/// Where a triangle's corners are stored: a test reads them axis by axis.
-#[inline(always)]
-fn places(mesh: &Mesh, [a, b, c]: [u32; 3]) -> [&DVec3; 3] {
-    [&mesh.positions[a as usize], &mesh.positions[b as usize], &mesh.positions[c as usize]]
 }
 
 #[inline(always)]

@@ -6,6 +6,7 @@
 //! coordinates and not from the distance, which is only as good as the longest axis.
 
 pub mod cut;
+pub mod leaf;
 
 use super::{LocalRay, Meet, Surface};
 use crate::math::Aabb;
@@ -29,19 +30,20 @@ pub struct Sheared {
 /// sliver is off by u times its aspect, which stays below this share up to aspects of 2³⁰.
 const NEAR: f64 = 1.0 / (1u64 << 22) as f64;
 
+/// The two axes after each, and it.
+const AXES: [[usize; 3]; 3] = [[1, 2, 0], [2, 0, 1], [0, 1, 2]];
+
 impl Sheared {
     /// Prepares a ray.
     pub fn new(ray: &LocalRay) -> Sheared {
-        let (d, size) = (ray.direction, ray.direction.abs());
-        let (axes, [x, y, along]) = if size.x > size.y && size.x > size.z {
-            ([1, 2, 0], [d.y, d.z, d.x])
-        } else if size.y > size.z {
-            ([2, 0, 1], [d.z, d.x, d.y])
-        } else {
-            ([0, 1, 2], [d.x, d.y, d.z])
-        };
-        let inverse = 1.0 / along;
-        let shear = [x * inverse, y * inverse, inverse];
+        let (d, size) = (ray.direction.to_array(), ray.direction.abs());
+        // Without branches: which axis is the largest cannot be foreseen.
+        let beyond_x = 2 - usize::from(size.y > size.z);
+        let is_x = (size.x > size.y) & (size.x > size.z);
+        let along = if is_x { 0 } else { beyond_x };
+        let axes = AXES[along];
+        let inverse = 1.0 / d[along];
+        let shear = [d[axes[0]] * inverse, d[axes[1]] * inverse, inverse];
         Sheared { origin: ray.origin, direction: ray.direction, axes, shear }
     }
 
@@ -68,24 +70,34 @@ impl Sheared {
         let mut v = a[0] * c[1] - a[1] * c[0];
         let mut w = b[0] * a[1] - b[1] * a[0];
         if (u == 0.0) | (v == 0.0) | (w == 0.0) {
-            u = difference_of_products(c[0], b[1], c[1], b[0]);
-            v = difference_of_products(a[0], c[1], a[1], c[0]);
-            w = difference_of_products(b[0], a[1], b[1], a[0]);
+            [u, v, w] = exact_sides(a, b, c);
         }
         // One branch: which edge a ray misses by cannot be foreseen.
         if ((u < 0.0) | (v < 0.0) | (w < 0.0)) & ((u > 0.0) | (v > 0.0) | (w > 0.0)) {
             return None;
         }
+        self.meet_inside([u, v, w], [a[2], b[2], c[2]], limit, || corners.map(|p| *p))
+    }
+
+    /// The same from the sides of the edges that the ray is on, all one or 0, and how deep the corners lie. `corners` are rarely asked for.
+    #[inline(always)]
+    fn meet_inside(
+        &self,
+        [u, v, w]: [f64; 3],
+        [a, b, c]: [f64; 3],
+        limit: f64,
+        corners: impl FnOnce() -> [DVec3; 3],
+    ) -> Option<Meet> {
         let determinant = u + v + w;
         if determinant == 0.0 {
             return None;
         }
         let inverse = 1.0 / determinant;
-        let sum = u * a[2] + v * b[2] + w * c[2];
+        let sum = u * a + v * b + w * c;
         let mut t = sum * self.shear[2] * inverse;
-        let depth = a[2].abs().max(b[2].abs()).max(c[2].abs()) * self.shear[2].abs();
+        let depth = a.abs().max(b.abs()).max(c.abs()) * self.shear[2].abs();
         if t.abs() <= depth * NEAR {
-            t = self.distance_by_plane(corners.map(|p| *p))?;
+            t = self.distance_by_plane(corners())?;
         }
         (t > 0.0 && t <= limit).then_some(Meet { t, a: v * inverse, b: w * inverse, face: 0, part: 0 })
     }
@@ -129,6 +141,16 @@ impl Sheared {
         let t = n.dot(nearest) / n.dot(self.direction);
         t.is_finite().then_some(t)
     }
+}
+
+/// Which side of each edge the ray is on, where plain products do not tell.
+#[cold]
+fn exact_sides(a: [f64; 3], b: [f64; 3], c: [f64; 3]) -> [f64; 3] {
+    [
+        difference_of_products(c[0], b[1], c[1], b[0]),
+        difference_of_products(a[0], c[1], a[1], c[0]),
+        difference_of_products(b[0], a[1], b[1], a[0]),
+    ]
 }
 
 /// The sign of p × q in the plane across the ray, exactly; where the ray goes through the edge, of the ray moved to (ε, ε²). 0 only for

@@ -1,6 +1,6 @@
 //! The sum of a cubic's powers, compiled for what the processor has: only how many coordinates one instruction takes differs, not one
 //! operation or its order, so that every value is the same to the last bit on all of them. Knows nothing of what the sum is for. One of
-//! the two rooms of the tree with unsafe code: there is no other way to such instructions.
+//! the three rooms of the tree with unsafe code: there is no other way to such instructions.
 
 use crate::math::point::Lanes;
 use crate::math::{Dd, Point};

@@ -1,6 +1,6 @@
 //! The test of a node's children, and the traversal around it, compiled for what the processor has: how many children one instruction
 //! tests differs, and by half an ulp where a ray meets a box, which margins cover. So which boxes are opened in vain may differ, and what is
-//! found inside never does. Knows nothing of what is traversed. One of the two rooms of the tree with unsafe code: there is no other way to such
+//! found inside never does. Knows nothing of what is traversed. One of the three rooms of the tree with unsafe code: there is no other way to such
 //! instructions.
 
 use super::{Met, Narrow, Node, Tree, WIDTH};
