@@ -27,6 +27,9 @@ const MARGIN: f64 = gamma(16);
 /// A bound on coordinates in a tree's frame.
 const FRAME_SIZE: f64 = 2.0;
 
+/// Nodes that no cache near the processor holds: from then on those that wait are fetched ahead.
+const MANY: usize = 1 << 14;
+
 /// Entries of the stack that need no allocation; deeper ones spill.
 const STACK: usize = 32;
 
@@ -91,9 +94,9 @@ fn next(stack: &mut Waiting, limit: f32) -> Option<Child> {
     Some(child_of(entry))
 }
 
-/// Pushes the children that the ray meets but one, which it gives: where they are to be `SORTED` the nearest, and farther ones first.
+/// Pushes the children that the ray meets but the nearest, farther ones first; gives the nearest.
 #[inline(always)]
-fn enter<const SORTED: bool>(stack: &mut Waiting, node: u32, (mut mask, near): Met) -> Option<Child> {
+fn enter(tree: &Tree, stack: &mut Waiting, node: u32, (mut mask, near): Met) -> Option<Child> {
     if mask == 0 {
         return None;
     }
@@ -107,20 +110,24 @@ fn enter<const SORTED: bool>(stack: &mut Waiting, node: u32, (mut mask, near): M
     if is_last {
         return Some((node, slot));
     }
-    let key = |slot: u32| pending(if SORTED { near[slot as usize] } else { 0.0 }, (node, slot));
+    let is_large = tree.nodes.len() >= MANY;
+    let key = |slot: u32| {
+        if is_large {
+            wide::fetch(&tree.nodes, tree.nodes[node as usize].child(slot as usize));
+        }
+        pending(near[slot as usize], (node, slot))
+    };
     let mut nearest = key(slot);
     let bottom = stack.len();
     while !is_last {
         let next;
         (next, is_last) = take();
         let next = key(next);
-        stack.push(if SORTED { nearest.max(next) } else { next });
-        nearest = if SORTED { nearest.min(next) } else { nearest };
+        stack.push(nearest.max(next));
+        nearest = nearest.min(next);
     }
-    if SORTED {
-        // Where some spilled, their order is lost, which costs time only.
-        sort_far_first(stack.above(bottom));
-    }
+    // Where some spilled, their order is lost, which costs time only.
+    sort_far_first(stack.above(bottom));
     Some(child_of(nearest))
 }
 
@@ -137,7 +144,7 @@ impl Tree {
         mut leaf: impl FnMut(Range<usize>, f64) -> f64,
     ) {
         if let Some(t_max) = self.offer_loose(t_max, &mut leaf) {
-            wide::walk::<true>(self, [&origin, &direction], t_max, &mut leaf);
+            wide::walk(self, [&origin, &direction], t_max, &mut leaf);
         }
     }
 
@@ -150,9 +157,9 @@ impl Tree {
         t_max: f64,
         mut leaf: impl FnMut(Range<usize>) -> bool,
     ) {
-        let mut leaf = |range, t_max| if leaf(range) { t_max } else { -1.0 };
-        if let Some(t_max) = self.offer_loose(t_max, &mut leaf) {
-            wide::walk::<false>(self, [&origin, &direction], t_max, &mut leaf);
+        let mut loose = |range, t_max| if leaf(range) { t_max } else { -1.0 };
+        if let Some(t_max) = self.offer_loose(t_max, &mut loose) {
+            wide::walk_any(self, [&origin, &direction], t_max, &mut leaf);
         }
     }
 
@@ -166,9 +173,9 @@ impl Tree {
     }
 }
 
-/// The traversal from where the ray enters. `meets` tests a node's children against a limit. Near ones first where they are to be `SORTED`.
+/// The traversal from where the ray enters. `meets` tests a node's children against a limit.
 #[inline(always)]
-fn walk<const SORTED: bool>(
+fn walk(
     tree: &Tree,
     [origin, direction]: [&DVec3; 2],
     mut t_max: f64,
@@ -183,7 +190,7 @@ fn walk<const SORTED: bool>(
     let mut at = 0;
     loop {
         let met = meets(&ray, &nodes[at as usize], limit);
-        let mut waiting = enter::<SORTED>(&mut stack, at, met);
+        let mut waiting = enter(tree, &mut stack, at, met);
         if waiting.is_none() {
             waiting = next(&mut stack, limit);
         }
@@ -192,11 +199,8 @@ fn walk<const SORTED: bool>(
             let node = &nodes[node as usize];
             let (child, count) = (node.child(slot as usize), node.count(slot as usize));
             if count == 0 {
-                // A ray of which a number is infinite or NaN meets absent children too, which name the first node.
-                if child != 0 {
-                    at = child;
-                    break;
-                }
+                at = child;
+                break;
             } else {
                 let first = child as usize;
                 let found = leaf(first..first + count as usize, t_max);
@@ -209,6 +213,50 @@ fn walk<const SORTED: bool>(
                 }
             }
             waiting = next(&mut stack, limit);
+        }
+    }
+}
+
+/// The traversal in no order until `leaf` gives false: what waits are nodes, each with the children that are left of it.
+#[inline(always)]
+fn walk_any(
+    tree: &Tree,
+    [origin, direction]: [&DVec3; 2],
+    t_max: f64,
+    meets: impl Fn(&Narrow, &Node, f32) -> Met,
+    leaf: &mut impl FnMut(Range<usize>) -> bool,
+) {
+    let Some(entry) = Entry::new(tree, origin, direction, t_max) else { return };
+    let (ray, nodes) = (Narrow::new(&entry, direction), &tree.nodes[..]);
+    let limit = entry.limit(t_max);
+    let mut spilled = Vec::new();
+    let mut stack = Stack::<(u32, u32), STACK>::new(&mut spilled);
+    let mut at = 0;
+    loop {
+        let (mut left, _) = meets(&ray, &nodes[at as usize], limit);
+        loop {
+            if left == 0 {
+                let Some(waiting) = stack.pop() else { return };
+                (at, left) = waiting;
+            }
+            let node = &nodes[at as usize];
+            let slot = (left.trailing_zeros() & SLOT) as usize;
+            left &= left - 1;
+            let (child, count) = (node.child(slot), node.count(slot));
+            if count == 0 {
+                if left != 0 {
+                    if nodes.len() >= MANY {
+                        wide::fetch(nodes, node.child((left.trailing_zeros() & SLOT) as usize));
+                    }
+                    stack.push((at, left));
+                }
+                at = child;
+                break;
+            }
+            let first = child as usize;
+            if !leaf(first..first + count as usize) {
+                return;
+            }
         }
     }
 }

@@ -23,7 +23,7 @@ impl Tree {
             meets_fused(ray, node, limit)
         };
         if let Some(t_max) = self.offer_loose(t_max, &mut leaf) {
-            walk::<true>(self, [&origin, &direction], t_max, count, &mut leaf);
+            walk(self, [&origin, &direction], t_max, count, &mut leaf);
         }
         visits.get()
     }

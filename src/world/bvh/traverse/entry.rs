@@ -28,12 +28,12 @@ const STEPS: f32 = 64.0 * f32::EPSILON / 2.0;
 const MOST: f32 = (1u64 << 60) as f32;
 
 impl Entry {
-    /// None where the ray starts far off and misses the bounds before `t_max`. The largest coordinate of the direction is from ½ to 2.
+    /// None where the ray starts far off and misses the bounds before `t_max`, or starts nowhere. The largest coordinate of the direction is
+    /// from ½ to 2.
     #[inline(always)]
     pub fn new(tree: &Tree, origin: &DVec3, direction: &DVec3, t_max: f64) -> Option<Entry> {
         let scale = tree.frame.scale;
-        let from_center = *origin - tree.frame.center;
-        let point = from_center * scale;
+        let point = (*origin - tree.frame.center) * scale;
         // Not so where one is NaN.
         if (point.x.abs() <= NEAR) & (point.y.abs() <= NEAR) & (point.z.abs() <= NEAR) {
             return Some(Entry { point, margin: STEPS, start: 0.0, scale });
@@ -48,12 +48,11 @@ impl Entry {
         let scale = tree.frame.scale;
         let from_center = *origin - tree.frame.center;
         let travelled = from_center.abs().max_element() + 2.0 * start;
-        Some(Entry {
-            point: (from_center + *direction * start) * scale,
-            margin: round_up(MARGIN * (travelled * scale + FRAME_SIZE)).min(MOST) + STEPS,
-            start,
-            scale,
-        })
+        let point = (from_center + *direction * start) * scale;
+        // It lies within the bounds, whatever was lost on the way there.
+        let point = point.clamp(DVec3::splat(-NEAR), DVec3::splat(NEAR));
+        let margin = round_up(MARGIN * (travelled * scale + FRAME_SIZE)).min(MOST) + STEPS;
+        point.is_finite().then_some(Entry { point, margin, start, scale })
     }
 
     /// A float at or beyond the distance t in the tree's frame.
@@ -68,13 +67,12 @@ impl Entry {
 const LEAST: f32 = f32::from_bits((127 - 60) << 23);
 
 /// A ray in a tree's frame, narrowed so that it meets more boxes rather than fewer.
-#[derive(Default)]
 pub struct Narrow {
     /// 1 over each coordinate of the direction.
-    pub inverse: [f32; 3],
+    pub inverse: [f32; 4],
     /// Minus that times the origin, moved outward: for planes that the ray enters through, and for those it leaves through.
-    pub near: [f32; 3],
-    pub far: [f32; 3],
+    pub near: [f32; 4],
+    pub far: [f32; 4],
     /// Which coordinates of the direction are negative, as bits.
     negative: u32,
 }
@@ -82,16 +80,17 @@ pub struct Narrow {
 impl Narrow {
     #[inline(always)]
     pub fn new(entry: &Entry, direction: &DVec3) -> Narrow {
-        let mut ray = Narrow::default();
-        for a in 0..3 {
-            let (point, along) = (entry.point[a] as f32, direction[a] as f32);
-            let inverse = along.signum() / along.abs().max(LEAST);
-            let toward = entry.margin.copysign(along);
-            ray.inverse[a] = inverse;
-            (ray.near[a], ray.far[a]) = (-(point + toward) * inverse, -(point - toward) * inverse);
-            ray.negative |= u32::from(along.is_sign_negative()) << a;
-        }
-        ray
+        // Four at once: the last means nothing.
+        let [x, y, z] = entry.point.to_array().map(|x| x as f32);
+        let point = [x, y, z, 0.0];
+        let [x, y, z] = direction.to_array().map(|x| x as f32);
+        let along = [x, y, z, 1.0];
+        let inverse: [f32; 4] = std::array::from_fn(|a| 1.0 / along[a].abs().max(LEAST).copysign(along[a]));
+        let toward: [f32; 4] = std::array::from_fn(|a| entry.margin.copysign(along[a]));
+        let near: [f32; 4] = std::array::from_fn(|a| -(point[a] + toward[a]) * inverse[a]);
+        let far: [f32; 4] = std::array::from_fn(|a| -(point[a] - toward[a]) * inverse[a]);
+        let negative = (0..3).fold(0, |bits, a| bits | (along[a].to_bits() >> 31) << a);
+        Narrow { inverse, near, far, negative }
     }
 
     /// The row of a node's planes that the ray enters through along an axis, and of those it leaves through.

@@ -9,7 +9,7 @@ use std::ops::Range;
 
 /// [`super::walk`] with the widest instructions that there are.
 #[inline(always)]
-pub(super) fn walk<const SORTED: bool>(
+pub(super) fn walk(
     tree: &Tree,
     ray: [&DVec3; 2],
     t_max: f64,
@@ -19,9 +19,43 @@ pub(super) fn walk<const SORTED: bool>(
     if crate::math::vectors::has_avx2_and_fma() {
         // SAFETY: the processor has just been found to have what the function is compiled for.
         #[allow(unsafe_code, reason = "code for instructions that not every processor has")]
-        return unsafe { x86::walk_avx2::<SORTED>(tree, ray, t_max, leaf) };
+        return unsafe { x86::walk_avx2(tree, ray, t_max, leaf) };
     }
-    super::walk::<SORTED>(tree, ray, t_max, meets, leaf);
+    super::walk(tree, ray, t_max, meets, leaf);
+}
+
+/// [`super::walk_any`] with the widest instructions that there are.
+#[inline(always)]
+pub(super) fn walk_any(
+    tree: &Tree,
+    ray: [&DVec3; 2],
+    t_max: f64,
+    leaf: &mut impl FnMut(Range<usize>) -> bool,
+) {
+    #[cfg(target_arch = "x86_64")]
+    if crate::math::vectors::has_avx2_and_fma() {
+        // SAFETY: the processor has just been found to have what the function is compiled for.
+        #[allow(unsafe_code, reason = "code for instructions that not every processor has")]
+        return unsafe { x86::walk_any_avx2(tree, ray, t_max, leaf) };
+    }
+    super::walk_any(tree, ray, t_max, meets, leaf);
+}
+
+/// Has the memory of a node brought near. Whatever the index says: that of an item does no harm.
+#[inline(always)]
+pub(super) fn fetch(nodes: &[Node], index: u32) {
+    #[cfg(target_arch = "x86_64")]
+    {
+        use std::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
+        let at = nodes.as_ptr().wrapping_add(index as usize).cast::<i8>();
+        for line in 0..4 {
+            // SAFETY: what a place holds is a hint here, which is neither read nor need be there.
+            #[allow(unsafe_code, reason = "a hint has no safe way")]
+            unsafe {
+                _mm_prefetch::<_MM_HINT_T0>(at.wrapping_add(64 * line))
+            };
+        }
+    }
 }
 
 /// The test by plain operations.
@@ -59,14 +93,25 @@ mod x86 {
     use std::arch::x86_64::*;
 
     #[target_feature(enable = "avx2,fma")]
-    pub(super) fn walk_avx2<const SORTED: bool>(
+    pub(super) fn walk_avx2(
         tree: &Tree,
         ray: [&DVec3; 2],
         t_max: f64,
         leaf: &mut impl FnMut(Range<usize>, f64) -> f64,
     ) {
         let meets = |ray: &Narrow, node: &Node, limit| meets_avx2(ray, node, limit);
-        super::super::walk::<SORTED>(tree, ray, t_max, meets, leaf);
+        super::super::walk(tree, ray, t_max, meets, leaf);
+    }
+
+    #[target_feature(enable = "avx2,fma")]
+    pub(super) fn walk_any_avx2(
+        tree: &Tree,
+        ray: [&DVec3; 2],
+        t_max: f64,
+        leaf: &mut impl FnMut(Range<usize>) -> bool,
+    ) {
+        let meets = |ray: &Narrow, node: &Node, limit| meets_avx2(ray, node, limit);
+        super::super::walk_any(tree, ray, t_max, meets, leaf);
     }
 
     /// [`super::meets`], eight children at once. The larger and the smaller of two give their second operand where one is NaN, as
@@ -127,10 +172,8 @@ mod tests {
                 t_max
             };
             let mut to_plain = |range, t_max| noted(&mut by_plain, range, t_max);
-            super::super::walk::<true>(&tree, [&origin, &direction], 1e3, meets_fused, &mut to_plain);
-            walk::<true>(&tree, [&origin, &direction], 1e3, &mut |range, t_max| {
-                noted(&mut by_wide, range, t_max)
-            });
+            super::super::walk(&tree, [&origin, &direction], 1e3, meets_fused, &mut to_plain);
+            walk(&tree, [&origin, &direction], 1e3, &mut |range, t_max| noted(&mut by_wide, range, t_max));
             n_offered += by_plain.len();
             assert_eq!(by_wide, by_plain, "ray {i}");
         }
