@@ -27,18 +27,23 @@ impl Default for Tree {
 impl Tree {
     /// A tree over `count` items, each with its box; see [`bvh::Tree::build`].
     pub fn build(accelerator: Accelerator, count: usize, bounds_of: impl Fn(usize) -> Aabb + Sync) -> Tree {
-        Tree::build_clipped(accelerator, count, bounds_of, |_, cell| *cell)
+        match accelerator {
+            Accelerator::Bvh => Tree::Bvh(bvh::Tree::build(count, bounds_of)),
+            Accelerator::KdTree => Tree::KdTree(kdtree::Tree::build(count, bounds_of)),
+            Accelerator::None => Tree::Bvh(bvh::Tree::list(count, bounds_of)),
+        }
     }
 
-    /// The same where `clip` gives a box around what lies of an item in a box; see [`kdtree::Tree::build_clipped`].
-    pub fn build_clipped(
+    /// The same over triangles, where `clip` gives a box around what lies of one in a box; see [`bvh::Tree::build_of_triangles`] and
+    /// [`kdtree::Tree::build_clipped`].
+    pub fn build_of_triangles(
         accelerator: Accelerator,
         count: usize,
         bounds_of: impl Fn(usize) -> Aabb + Sync,
         clip: impl Fn(usize, &Aabb) -> Aabb + Sync,
     ) -> Tree {
         match accelerator {
-            Accelerator::Bvh => Tree::Bvh(bvh::Tree::build(count, bounds_of)),
+            Accelerator::Bvh => Tree::Bvh(bvh::Tree::build_of_triangles(count, bounds_of)),
             Accelerator::KdTree => Tree::KdTree(kdtree::Tree::build_clipped(count, bounds_of, clip)),
             Accelerator::None => Tree::Bvh(bvh::Tree::list(count, bounds_of)),
         }

@@ -1,7 +1,7 @@
 //! Trees against one another on meshes: time to build, memory, rays a second, nodes and triangles a ray, wrong hits; and how all that grows
 //! with the mesh and with the picture. Knows neither files nor how a mesh is read.
 //!
-//! All trees stand over the same triangles with the same test of each, one by one, so that they alone differ.
+//! All trees stand over the same triangles with the same test of each, so that they alone differ.
 
 pub mod lines;
 pub mod meshes;

@@ -4,7 +4,7 @@ use crate::geometry::mesh::Mesh;
 use crate::math::Aabb;
 use crate::scene::Accelerator;
 use crate::world::shape::LocalRay;
-use crate::world::shape::triangle::{Sheared, cut::cut};
+use crate::world::shape::triangle::{Sheared, cut::cut, leaf};
 use crate::world::tree::Tree;
 use crate::world::{bvh, kdtree};
 use glam::DVec3;
@@ -65,7 +65,7 @@ pub struct Line {
 pub struct Subject<'m> {
     mesh: &'m Mesh,
     /// In the tree's order.
-    triangles: Vec<[u32; 3]>,
+    corners: leaf::Corners,
     tree: Tree,
 }
 
@@ -77,14 +77,15 @@ impl<'m> Subject<'m> {
         let bounds = |i: usize| Aabb::of(corners(i));
         let clip = |i: usize, cell: &Aabb| cut(corners(i), cell);
         let tree = match builder {
-            Builder::Bvh => Tree::Bvh(bvh::Tree::build(n, bounds)),
+            Builder::Bvh => Tree::Bvh(bvh::Tree::build_of_triangles(n, bounds)),
             Builder::BvhMedian => Tree::Bvh(bvh::Tree::build_median(n, bounds)),
-            Builder::KdTree => Tree::build_clipped(Accelerator::KdTree, n, bounds, clip),
+            Builder::KdTree => Tree::build_of_triangles(Accelerator::KdTree, n, bounds, clip),
             Builder::KdTreeOfBoxes => Tree::KdTree(kdtree::Tree::build(n, bounds)),
             Builder::List => Tree::Bvh(bvh::Tree::list(n, bounds)),
         };
-        let triangles = tree.order().iter().map(|&i| mesh.triangles[i as usize]).collect();
-        Subject { mesh, triangles, tree }
+        let triangles = tree.order().iter().map(|&i| mesh.triangles[i as usize]);
+        let corners = leaf::Corners::new(&mesh.positions, triangles);
+        Subject { mesh, corners, tree }
     }
 
     /// Memory of the nodes and of what is in the leaves, bytes.
@@ -157,10 +158,9 @@ impl<'a, 'm> Asked<'a, 'm> {
 
     #[inline(always)]
     fn leaf(&mut self, range: std::ops::Range<usize>) -> f64 {
-        let Subject { mesh, triangles, tree } = self.subject;
-        for place in range {
-            let corners = triangles[place].map(|p| mesh.positions[p as usize]);
-            let Some(meet) = self.sheared.meet(corners.each_ref(), self.limit) else { continue };
+        let Subject { mesh, corners, tree } = self.subject;
+        let asked = leaf::Asked { ray: &self.sheared, limit: self.limit, any: self.any };
+        if let Some((place, meet)) = corners.nearest(&mesh.positions, range, &asked, |i| tree.order()[i]) {
             let triangle = tree.order()[place];
             if self.best.is_none_or(|(t, first)| meet.t < t || (meet.t == t && triangle < first)) {
                 self.best = Some((meet.t, triangle));

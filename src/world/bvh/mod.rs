@@ -21,6 +21,13 @@ use frame::Frame;
 /// Children of a node.
 const WIDTH: usize = 8;
 
+/// What a node of its own costs, in tests of items: where splitting a part gains less it is a leaf.
+const NODE_COST: f32 = 2.0;
+
+/// The same in tests of triangles. Measured on meshes of 82 thousand to 1.3 million: at 4 there are 40 % of the nodes of 2, and rays are
+/// 2 to 15 % faster; 3 and 6 are within 3 % of it.
+const NODE_COST_OF_TRIANGLES: f32 = 4.0;
+
 /// Up to eight children, as arrays over the children so that one instruction tests all of them. Four cache lines.
 #[derive(Clone, Copy, Debug)]
 #[repr(align(64))]
@@ -83,7 +90,12 @@ impl Tree {
     /// A tree over `count` items, each with its box. Items whose box is empty are never met; those whose box is infinite or NaN
     /// are offered to every ray. Deterministic, whatever the number of threads.
     pub fn build(count: usize, bounds_of: impl Fn(usize) -> Aabb + Sync) -> Tree {
-        build::build(count, bounds_of)
+        build::build(count, bounds_of, NODE_COST)
+    }
+
+    /// The same over items that cost so little that a node is rarely worth sparing some: triangles.
+    pub fn build_of_triangles(count: usize, bounds_of: impl Fn(usize) -> Aabb + Sync) -> Tree {
+        build::build(count, bounds_of, NODE_COST_OF_TRIANGLES)
     }
 
     /// No tree: every item is offered to every ray, in order.

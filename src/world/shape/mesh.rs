@@ -73,8 +73,12 @@ impl MeshShape {
     pub fn new(mesh: Arc<Mesh>, worn: Option<Worn>, accelerator: Accelerator) -> MeshShape {
         let count = mesh.triangles.len();
         let of = |i: usize| corners(&mesh, mesh.triangles[i]);
-        let tree =
-            Tree::build_clipped(accelerator, count, |i| bounds_of(of(i)), |i, cell| cut::cut(of(i), cell));
+        let tree = Tree::build_of_triangles(
+            accelerator,
+            count,
+            |i| bounds_of(of(i)),
+            |i, cell| cut::cut(of(i), cell),
+        );
         let triangles = tree.order().iter().map(|&i| mesh.triangles[i as usize]);
         let corners = leaf::Corners::new(&mesh.positions, triangles);
         MeshShape { mesh, corners, tree, worn: worn.map(Box::new) }

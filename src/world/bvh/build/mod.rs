@@ -45,7 +45,7 @@ fn finish(ready: Prepared, mut nodes: Vec<Node>, mut order: Vec<u32>) -> Tree {
     Tree { frame: ready.frame, bounds: ready.bounds, unbounded, nodes, order, bounded }
 }
 
-pub(super) fn build(count: usize, bounds_of: impl Fn(usize) -> Aabb + Sync) -> Tree {
+pub(super) fn build(count: usize, bounds_of: impl Fn(usize) -> Aabb + Sync, node_cost: f32) -> Tree {
     let mut ready = prepare(count, &bounds_of);
     let items = &mut ready.items;
     let mut order = vec![0; items.len()];
@@ -53,7 +53,7 @@ pub(super) fn build(count: usize, bounds_of: impl Fn(usize) -> Aabb + Sync) -> T
     // One box would only repeat the bounds. The root is a node even where everything fits a leaf.
     if items.len() > 1 {
         let whole = Part::whole(items);
-        subtree::grow(items, whole, &mut order, &mut nodes, &mut Bins::new());
+        subtree::grow(items, whole, &mut order, &mut nodes, &mut Bins::new(node_cost));
     } else {
         order = items.iter().map(Item::number).collect();
     }

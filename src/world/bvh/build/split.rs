@@ -22,6 +22,8 @@ pub(super) struct Bins {
     bounds: [[Box32; 3]; MOST],
     /// How many items, a lane for each axis.
     weight: [[f32; 4]; MOST],
+    /// What a node of its own costs, in tests of the items at hand: below this gain a part is a leaf.
+    pub node_cost: f32,
 }
 
 /// The cheapest plane along each axis: the first bin of the right half, and the cost; infinite where there is none.
@@ -32,8 +34,8 @@ struct Planes {
 
 impl Bins {
     /// Of no meaning yet.
-    pub fn new() -> Bins {
-        Bins { bounds: [[Box32::EMPTY; 3]; MOST], weight: [[0.0; 4]; MOST] }
+    pub fn new(node_cost: f32) -> Bins {
+        Bins { bounds: [[Box32::EMPTY; 3]; MOST], weight: [[0.0; 4]; MOST], node_cost }
     }
 
     fn fill<T: Boxed>(&mut self, run: &[T], grid: &Grid, n_bins: usize) {

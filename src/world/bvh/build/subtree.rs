@@ -70,7 +70,7 @@ fn over_cells(
         (cells, order) = (after, order_after);
     }
     let below = if rayon::current_num_threads() > 1 {
-        apart(sorted, runs, nodes)
+        apart(sorted, runs, nodes, bins.node_cost)
     } else {
         // The detour by parts would give the same nodes.
         runs.into_iter()
@@ -106,10 +106,12 @@ fn apart(
     sorted: &Cells<'_>,
     runs: Vec<(&mut [Cell], Part, &mut [u32])>,
     nodes: &mut Vec<Node>,
+    node_cost: f32,
 ) -> Vec<Option<u32>> {
     let build = |(cells, part, order): (&mut [Cell], Part, &mut [u32])| {
         let mut below = Vec::new();
-        child_of_cells(sorted, cells, part, order, &mut below, &mut Bins::new()).map(|_| below)
+        let bins = &mut Bins::new(node_cost);
+        child_of_cells(sorted, cells, part, order, &mut below, bins).map(|_| below)
     };
     let built: Vec<Option<Vec<Node>>> = runs.into_par_iter().map(build).collect();
     built.into_iter().map(|below| below.map(|below| append(below, nodes))).collect()
