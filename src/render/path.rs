@@ -297,8 +297,10 @@ impl Path {
         (which, u): (f64, DVec2),
         sampler: &mut Sampler,
     ) -> Sampled<Rgb> {
-        let Some((i, often)) = self.choice.pick(which) else { return Ok(Rgb::ZERO) };
-        let light = &self.lights.lights[i];
+        let lights = &self.lights.lights;
+        let chosen = self.choice.pick_at(lights, hit.point, bsdf.normal, which);
+        let Some((i, often)) = chosen else { return Ok(Rgb::ZERO) };
+        let light = &lights[i];
         let sample = light.sample(hit.point, bsdf.normal, u);
         let Some(sample) = &sample else { return Ok(Rgb::ZERO) };
         let sent = bsdf.sent(sample.wi) * sample.weight / often;
@@ -337,8 +339,12 @@ impl Path {
 
     /// The share that counts of what a ray found of a light, where asking it might have found the same.
     fn share_beside_asking(&self, i: usize, last: &Last, wi: DVec3, met: Option<&SurfacePoint>) -> f64 {
-        let density = self.lights.lights[i].density(last.point, last.normal, wi, met);
-        density.map_or(0.0, |density| balance(last.density, density * self.choice.share(i)))
+        let lights = &self.lights.lights;
+        let density = lights[i].density(last.point, last.normal, wi, met);
+        density.map_or(0.0, |density| {
+            let often = self.choice.share_at(lights, i, last.point, last.normal);
+            balance(last.density, density * often)
+        })
     }
 
     /// Radiance from where nothing is, less what asking the skies already gave.

@@ -8,6 +8,7 @@ mod choice;
 mod emission;
 mod picture;
 mod pieces;
+mod reach;
 mod surface;
 
 use super::hit::{Hit, SurfacePoint};

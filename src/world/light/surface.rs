@@ -5,6 +5,7 @@
 
 use super::emission::{Departure, sphere};
 use super::pieces::{Curved, Piece, PiecePoint, sphere_uv};
+use super::reach::Extent;
 use super::{LightEnd, LightSample, SurfacePoint, cosine_hemisphere, frame, to_frame};
 use crate::geometry::mesh::Mesh;
 use crate::math::Affine;
@@ -21,6 +22,7 @@ use std::f64::consts::{PI, TAU};
 #[derive(Debug)]
 pub struct AreaLight {
     form: Form,
+    extent: Extent,
     emission: Texture,
     local_from_world: Affine,
 }
@@ -50,7 +52,8 @@ impl AreaLight {
             return None;
         }
         let form = form_of(emitter)?;
-        Some(AreaLight { form, emission, local_from_world: emitter.world_from_local.inverse() })
+        let extent = extent_of(&form);
+        Some(AreaLight { form, extent, emission, local_from_world: emitter.world_from_local.inverse() })
     }
 
     /// Light toward a point from a point of the surface chosen by u. `normal` is the receiver's, on the side that is lit; `dimming` is
@@ -122,6 +125,11 @@ impl AreaLight {
             Form::Sphere { radius, .. } => 4.0 * PI * radius * radius,
             Form::Pieces { sums, .. } => sums[sums.len() - 1],
         }
+    }
+
+    /// As it is seen from afar.
+    pub(super) fn extent(&self) -> &Extent {
+        &self.extent
     }
 
     /// Its radiance; white for a pattern.
@@ -252,6 +260,30 @@ fn choose<'a>(pieces: &'a [Piece], sums: &[f64], u: DVec2) -> (&'a Piece, f64, D
     let weight = sums[i] - before;
     let rest = ((at - before) / weight).clamp(0.0, 1.0);
     (&pieces[i], weight / total, DVec2::new(rest, u.y))
+}
+
+fn extent_of(form: &Form) -> Extent {
+    match form {
+        Form::Sphere { center, radius } => {
+            Extent { center: *center, radius: *radius, area: PI * radius * radius, normal: None }
+        }
+        Form::Pieces { pieces, sums, .. } => {
+            let total = sums[sums.len() - 1];
+            let middles = pieces.iter().map(|piece| piece.point(DVec2::splat(0.5)));
+            let center = middles.map(|p| p.at.point * p.area).sum::<DVec3>() / total;
+            let corners = [DVec2::ZERO, DVec2::X, DVec2::Y, DVec2::ONE];
+            let around = pieces.iter().flat_map(|piece| corners.map(|u| piece.point(u).at.point));
+            let radius = around.map(|p| (p - center).length()).fold(0.0, f64::max);
+            // What is convex and closed shows a quarter of its area on average (Cauchy).
+            let (area, normal) = match pieces.as_slice() {
+                [one] if !matches!(one, Piece::Curved { .. }) => {
+                    (total, Some(one.point(DVec2::splat(0.5)).at.normal))
+                }
+                _ => (total / 4.0, None),
+            };
+            Extent { center, radius, area, normal }
+        }
+    }
 }
 
 fn form_of(emitter: &Emitter) -> Option<Form> {
