@@ -27,7 +27,7 @@ fn head(machine: &Machine) -> String {
     format!(
         "# Trees: what a ray costs\n\n\
          `ogee bench accelerators` measured it, `ogee bench report` wrote this page from [results](results) alone. {told}.\n\n\
-         All trees stand over the same triangles with the same test of each, one by one, as scenes do. Bytes are for \
+         All trees stand over the same triangles with the same test of each, as scenes do. Bytes are for \
          each triangle: the tree's nodes, and what is in its leaves; those of the mesh itself come on top and are the same for all. Rays are on one \
          thread, in turn, the fastest of several rounds; building takes all threads. Nodes and tests are counted, and the same on every machine; the \
          nodes of `bvh` have eight children, those of `kdtree` two, and its leaves count as nodes. Wrong are rays that meet \
