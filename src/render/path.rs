@@ -256,18 +256,21 @@ impl Path {
     fn go_on(&self, world: &World, hit: &Hit<'_>, bsdf: &Bsdf, walk: &mut Walk<'_>) -> Sampled<bool> {
         let spreads = bsdf.has_lobes() && !walk.stage.is_covered();
         let n = if spreads { std::mem::replace(&mut walk.branches, 1) } else { 1 };
-        let (which, odds) = (walk.sampler.next_set(), bsdf.odds());
+        let odds = bsdf.odds();
+        let (one_way, one_light) = (odds.are_certain(), self.choice.is_certain());
+        let which = walk.sampler.next_set_if(!(one_way && one_light));
+        let chance = |i| which.map_or(DVec2::splat(CERTAIN), |which| which.point(i, n));
         if spreads && !self.lights.lights.is_empty() {
             let places = walk.sampler.next_set();
             for i in 0..n {
-                let light = if self.choice.is_certain() { CERTAIN } else { which.point(i, n).y };
+                let light = if one_light { CERTAIN } else { chance(i).y };
                 let u = (light, places.point(i, n));
                 let asked = self.asked(world, hit, (bsdf, odds), u, walk.sampler)?;
                 walk.sum += walk.weight * asked / f64::from(n);
             }
         }
         let ways = walk.sampler.next_set();
-        let lobe = |i| if odds.are_certain() { CERTAIN } else { which.point(i, n).x };
+        let lobe = |i| if one_way { CERTAIN } else { chance(i).x };
         let way = |i| bsdf.bounce(odds, lobe(i), ways.point(i, n));
         if n == 1 {
             let Some(bounce) = way(0) else { return Ok(false) };

@@ -95,13 +95,24 @@ impl Sampler {
     }
 
     /// The next dimensions as a set of points that are stratified together. Taken once, before a loop over its points.
+    #[inline]
     pub fn next_set(&mut self) -> PointSet {
         let (seed, place) = (self.seed, self.place);
         let pixel = *self.pixel.get_or_insert_with(|| mix(mix(seed ^ GOLDEN).wrapping_add(mix(place))));
-        let place = pixel.wrapping_add(u64::from(self.dimension).wrapping_mul(GOLDEN));
+        let key = mix(pixel.wrapping_add(u64::from(self.dimension).wrapping_mul(GOLDEN)));
         self.dimension += 1;
         let Sampler { sample, kind, samples, .. } = *self;
-        PointSet { place, sample, kind, samples }
+        PointSet { order: key as u32, scramble: mix(key ^ GOLDEN), sample, kind, samples }
+    }
+
+    /// The next dimensions where they are needed; none are left out, so that all others stay as they are.
+    #[inline]
+    pub fn next_set_if(&mut self, needed: bool) -> Option<PointSet> {
+        if needed {
+            return Some(self.next_set());
+        }
+        self.dimension += 1;
+        None
     }
 }
 
@@ -109,8 +120,8 @@ impl Sampler {
 /// continue one sequence, so that n points at each of N samples are as even as N·n points at one.
 #[derive(Clone, Copy, Debug)]
 pub struct PointSet {
-    /// Pixel and dimension, not mixed yet: many a set is not asked.
-    place: u64,
+    order: u32,
+    scramble: u64,
     sample: u32,
     kind: SamplerKind,
     samples: u32,
@@ -120,20 +131,24 @@ impl PointSet {
     /// Point i of the n taken at this camera sample, in (0, 1)².
     pub fn point(self, i: u32, n: u32) -> DVec2 {
         let index = self.sample.wrapping_mul(n).wrapping_add(i);
-        let key = mix(self.place);
-        let (order, scramble) = (key as u32, mix(key ^ GOLDEN));
         match self.kind {
-            SamplerKind::Sobol => {
-                let (x, y) = sobol(owen(index, order));
-                let (x, y) = owen_both(x, y, scramble);
-                DVec2::new(unit(x), unit(y))
-            }
+            SamplerKind::Sobol => scrambled_sobol(index, self.order, self.scramble),
             SamplerKind::Stratified => {
-                in_cell(index, self.samples.saturating_mul(n), order, anywhere(index, scramble))
+                let within = anywhere(index, self.scramble);
+                in_cell(index, self.samples.saturating_mul(n), self.order, within)
             }
-            SamplerKind::Independent => anywhere(index, scramble),
+            SamplerKind::Independent => anywhere(index, self.scramble),
         }
     }
+}
+
+/// A point of the sequence, taken in an order and scrambled by nested uniform scrambling: each bit of a fraction is flipped or not by a
+/// hash of the bits above it. Hashes go from the low bits to the high ones, so fractions are turned round for them.
+fn scrambled_sobol(index: u32, order: u32, scramble: u64) -> DVec2 {
+    let x = hash_upward(index.reverse_bits(), order).reverse_bits();
+    let (x, y) = (hash_upward(x, scramble as u32), hash_upward(sobol_second(x), (scramble >> 32) as u32));
+    let back = (u64::from(x) << 32 | u64::from(y)).reverse_bits();
+    DVec2::new(unit(back as u32), unit((back >> 32) as u32))
 }
 
 fn anywhere(index: u32, scramble: u64) -> DVec2 {
@@ -185,24 +200,8 @@ fn unit(x: u32) -> f64 {
     (f64::from(x) + 0.5) * (1.0 / 4_294_967_296.0)
 }
 
-/// Nested uniform scrambling of a binary fraction: each bit is flipped or not by a hash of the bits above it.
-fn owen(x: u32, seed: u32) -> u32 {
-    owen_reversed(x.reverse_bits(), seed).reverse_bits()
-}
-
-/// Of two, by the halves of a seed: both are turned round at once.
-fn owen_both(x: u32, y: u32, seed: u64) -> (u32, u32) {
-    let reversed = (u64::from(x) << 32 | u64::from(y)).reverse_bits();
-    let (x, y) = (
-        owen_reversed(reversed as u32, seed as u32),
-        owen_reversed((reversed >> 32) as u32, (seed >> 32) as u32),
-    );
-    let back = (u64::from(x) << 32 | u64::from(y)).reverse_bits();
-    (back as u32, (back >> 32) as u32)
-}
-
-/// The same of a fraction whose first bit is its lowest.
-fn owen_reversed(mut x: u32, seed: u32) -> u32 {
+/// A permutation in which no bit depends on a higher one.
+fn hash_upward(mut x: u32, seed: u32) -> u32 {
     x ^= x.wrapping_mul(0x3d20_adea);
     x = x.wrapping_add(seed);
     x = x.wrapping_mul((seed >> 16) | 1);
@@ -210,16 +209,15 @@ fn owen_reversed(mut x: u32, seed: u32) -> u32 {
     x ^ x.wrapping_mul(0x53a2_2864)
 }
 
-/// Point `index` of the 2-D Sobol sequence as binary fractions: van der Corput's, and Pascal's matrix modulo 2 applied to it.
-fn sobol(index: u32) -> (u32, u32) {
-    let x = index.reverse_bits();
+/// The second coordinate of the 2-D Sobol sequence by the first, both as fractions whose first bit is their lowest: Pascal's matrix
+/// modulo 2. The first, van der Corput's, is then the index itself.
+fn sobol_second(x: u32) -> u32 {
     let mut y = x;
-    y ^= y << 16;
-    y ^= (y & 0x00ff_00ff) << 8;
-    y ^= (y & 0x0f0f_0f0f) << 4;
-    y ^= (y & 0x3333_3333) << 2;
-    y ^= (y & 0x5555_5555) << 1;
-    (x, y)
+    y ^= y >> 16;
+    y ^= (y & 0xff00_ff00) >> 8;
+    y ^= (y & 0xf0f0_f0f0) >> 4;
+    y ^= (y & 0xcccc_cccc) >> 2;
+    y ^ (y & 0xaaaa_aaaa) >> 1
 }
 
 #[cfg(test)]
@@ -241,7 +239,7 @@ mod tests {
     #[test]
     fn the_second_dimension_is_sobols() {
         for index in (0..4096).chain([u32::MAX, 0x8000_0001, 0x1234_5678]) {
-            assert_eq!(sobol(index).1, by_direction_numbers(index), "index {index}");
+            assert_eq!(sobol_second(index).reverse_bits(), by_direction_numbers(index), "index {index}");
         }
     }
 
