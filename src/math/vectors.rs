@@ -1,6 +1,9 @@
 //! Which instructions code may take that is compiled for several processors. They change no bit of any result, only how long it takes, and
 //! a test that compares both needs a processor that keeps to the least.
 
+#[cfg(target_arch = "x86_64")]
+pub(crate) mod lanes;
+
 use std::sync::atomic::{AtomicBool, Ordering};
 
 static BASELINE_ONLY: AtomicBool = AtomicBool::new(false);

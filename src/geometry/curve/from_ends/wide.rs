@@ -1,6 +1,6 @@
 //! The sum of a cubic's powers, compiled for what the processor has: only how many coordinates one instruction takes differs, not one
 //! operation or its order, so that every value is the same to the last bit on all of them. Knows nothing of what the sum is for. One of
-//! the three rooms of the tree with unsafe code: there is no other way to such instructions.
+//! the rooms with unsafe code: there is no other way to such instructions.
 
 use crate::math::point::Lanes;
 use crate::math::{Dd, Point};
@@ -27,6 +27,7 @@ fn plain<P: Point>(coefficients: &[Dd<P::Lanes>; 4], s: Dd) -> Option<P> {
 #[cfg(target_arch = "x86_64")]
 mod x86 {
     use crate::math::dd::{Dd, Factor};
+    use crate::math::vectors::lanes::{load_4, store_4};
     use std::arch::x86_64::*;
 
     /// s in every place of a register, and its halves.
@@ -44,11 +45,11 @@ mod x86 {
         let [hi, lo, high, low] = [s.hi, s.lo, high, low].map(|x| _mm256_set1_pd(x));
         let s = Spread { hi, lo, high, low };
         let [c0, c1, c2, c3] = coefficients;
-        let sum = (load(&c3.hi), load(&c3.lo));
+        let sum = (load_4(&c3.hi), load_4(&c3.lo));
         let (hi, lo) = step(step(step(sum, c2, &s), c1, &s), c0, &s);
         let sums = _mm256_add_pd(hi, lo);
         let same = _mm256_cmp_pd::<_CMP_EQ_OQ>(_mm256_sub_pd(sums, sums), _mm256_setzero_pd());
-        (_mm256_movemask_pd(same) == 0b1111).then(|| store(sums))
+        (_mm256_movemask_pd(same) == 0b1111).then(|| store_4(sums))
     }
 
     /// `super::super::step` on four coordinates, with [`Factor::times`] and [`crate::math::dd::two_sum`] written out.
@@ -62,31 +63,13 @@ mod x86 {
         let rest = _mm256_sub_pd(rest, _mm256_mul_pd(low, s.high));
         let rest = _mm256_sub_pd(rest, _mm256_mul_pd(high, s.low));
         let product_error = _mm256_sub_pd(_mm256_mul_pd(low, s.low), rest);
-        let b = load(&c.hi);
+        let b = load_4(&c.hi);
         let sum = _mm256_add_pd(p, b);
         let bb = _mm256_sub_pd(sum, p);
         let sum_error = _mm256_add_pd(_mm256_sub_pd(p, _mm256_sub_pd(sum, bb)), _mm256_sub_pd(b, bb));
         let carried = _mm256_add_pd(_mm256_mul_pd(lo, s.hi), _mm256_mul_pd(hi, s.lo));
-        let errors = _mm256_add_pd(_mm256_add_pd(product_error, sum_error), load(&c.lo));
+        let errors = _mm256_add_pd(_mm256_add_pd(product_error, sum_error), load_4(&c.lo));
         (sum, _mm256_add_pd(carried, errors))
-    }
-
-    #[target_feature(enable = "avx")]
-    #[inline]
-    #[allow(unsafe_code, reason = "a vector register has no safe way from memory")]
-    fn load(lanes: &[f64; 4]) -> __m256d {
-        // SAFETY: four numbers are read from an array of four; no alignment is asked for.
-        unsafe { _mm256_loadu_pd(lanes.as_ptr()) }
-    }
-
-    #[target_feature(enable = "avx")]
-    #[inline]
-    #[allow(unsafe_code, reason = "a vector register has no safe way to memory")]
-    fn store(vector: __m256d) -> [f64; 4] {
-        let mut lanes = [0.0; 4];
-        // SAFETY: four numbers are written to an array of four; no alignment is asked for.
-        unsafe { _mm256_storeu_pd(lanes.as_mut_ptr(), vector) };
-        lanes
     }
 }
 

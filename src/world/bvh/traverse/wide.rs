@@ -1,6 +1,6 @@
 //! The test of a node's children, and the traversal around it, compiled for what the processor has: how many children one instruction
 //! tests differs, and by half an ulp where a ray meets a box, which margins cover. So which boxes are opened in vain may differ, and what is
-//! found inside never does. Knows nothing of what is traversed. One of the three rooms of the tree with unsafe code: there is no other way to such
+//! found inside never does. Knows nothing of what is traversed. One of the rooms with unsafe code: there is no other way to such
 //! instructions.
 
 use super::{Met, Narrow, Node, Tree, WIDTH};
@@ -90,6 +90,7 @@ fn meets_by(ray: &Narrow, node: &Node, limit: f32, at: impl Fn(f32, f32, f32) ->
 #[cfg(target_arch = "x86_64")]
 mod x86 {
     use super::*;
+    use crate::math::vectors::lanes::{load_8, store_8};
     use std::arch::x86_64::*;
 
     #[target_feature(enable = "avx2,fma")]
@@ -122,31 +123,13 @@ mod x86 {
         let (mut near, mut far) = (_mm256_setzero_ps(), _mm256_set1_ps(limit));
         for a in 0..3 {
             let (enter, leave) = ray.rows(a);
-            let (enter, leave) = (load(&node.rows[enter & 7]), load(&node.rows[leave & 7]));
+            let (enter, leave) = (load_8(&node.rows[enter & 7]), load_8(&node.rows[leave & 7]));
             let inverse = _mm256_set1_ps(ray.inverse[a]);
             near = _mm256_max_ps(_mm256_fmadd_ps(enter, inverse, _mm256_set1_ps(ray.near[a])), near);
             far = _mm256_min_ps(_mm256_fmadd_ps(leave, inverse, _mm256_set1_ps(ray.far[a])), far);
         }
         let mask = _mm256_movemask_ps(_mm256_cmp_ps::<_CMP_LE_OQ>(near, far));
-        (mask as u32, store(near))
-    }
-
-    #[target_feature(enable = "avx2,fma")]
-    #[inline]
-    #[allow(unsafe_code, reason = "a vector register has no safe way from memory")]
-    fn load(lanes: &[f32; WIDTH]) -> __m256 {
-        // SAFETY: eight floats are read from an array of eight; no alignment is asked for.
-        unsafe { _mm256_loadu_ps(lanes.as_ptr()) }
-    }
-
-    #[target_feature(enable = "avx2,fma")]
-    #[inline]
-    #[allow(unsafe_code, reason = "a vector register has no safe way to memory")]
-    fn store(vector: __m256) -> [f32; WIDTH] {
-        let mut lanes = [0.0; WIDTH];
-        // SAFETY: eight floats are written to an array of eight; no alignment is asked for.
-        unsafe { _mm256_storeu_ps(lanes.as_mut_ptr(), vector) };
-        lanes
+        (mask as u32, store_8(near))
     }
 }
 

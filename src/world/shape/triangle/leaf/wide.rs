@@ -1,6 +1,6 @@
 //! The test of a triangle with its three corners in the lanes of one instruction, where the processor has such: the same operations in the
-//! same order as [`Sheared::meet`], so that every bit is the same. One of the three rooms of the tree with unsafe code: there is no
-//! other way to such instructions.
+//! same order as [`Sheared::meet`], so that every bit is the same. One of the rooms with unsafe code: there is no other way
+//! to such instructions.
 
 use super::{Asked, Corners, nearest_by};
 use crate::world::shape::Meet;
@@ -46,6 +46,7 @@ pub(super) fn nearest_plain(
 #[cfg(target_arch = "x86_64")]
 mod x86 {
     use super::*;
+    use crate::math::vectors::lanes::{load_3, store_4, widen_4};
     use crate::world::shape::triangle::Sheared;
     use std::arch::x86_64::*;
 
@@ -64,7 +65,9 @@ mod x86 {
         let all = all.as_flattened().as_flattened();
         nearest_by(range, asked, number, |position, limit| {
             let nine = &all[9 * position..][..10];
-            let row = |i: usize| _mm256_sub_pd(widen(nine, 3 * ray.axes[i]), origin[i]);
+            // The last of four is another row's, or lies after all.
+            let four = |axis: usize| nine[3 * axis..].first_chunk().expect("an axis is 0, 1 or 2");
+            let row = |i: usize| _mm256_sub_pd(widen_4(four(ray.axes[i])), origin[i]);
             let corners = || {
                 std::array::from_fn(|i| DVec3::new(nine[i].into(), nine[3 + i].into(), nine[6 + i].into()))
             };
@@ -84,7 +87,7 @@ mod x86 {
         let [x, y, z] = ray.axes.map(|axis| 2 * axis as i32);
         let order = _mm256_setr_epi32(x, x + 1, y, y + 1, z, z + 1, 6, 7);
         let turned = |v: &DVec3| {
-            let v = _mm256_castpd_ps(load_three(v));
+            let v = _mm256_castpd_ps(load_3(v.as_ref()));
             _mm256_castps_pd(_mm256_permutevar8x32_ps(v, order))
         };
         let origin = turned(&ray.origin);
@@ -127,43 +130,13 @@ mod x86 {
         if (_mm256_movemask_pd(sides) + 1) & 7 > 1 {
             return None;
         }
-        let ([u, v, w, _], [a, b, c, _]) = (store(sides), store(z));
+        let ([u, v, w, _], [a, b, c, _]) = (store_4(sides), store_4(z));
         ray.meet_inside([u, v, w], [a, b, c], limit, corners)
     }
 
     #[cold]
     fn meet_on_edge(ray: &Sheared, corners: [DVec3; 3], limit: f64) -> Option<Meet> {
         ray.meet(corners.each_ref(), limit)
-    }
-
-    /// Four numbers from a place on; the last may lie beyond what is wanted.
-    #[target_feature(enable = "avx2")]
-    #[inline]
-    #[allow(unsafe_code, reason = "a vector register has no safe way from memory")]
-    fn widen(numbers: &[f32], first: usize) -> __m256d {
-        let four = &numbers[first..][..4];
-        // SAFETY: four floats are read from a slice of four; no alignment is asked for.
-        _mm256_cvtps_pd(unsafe { _mm_loadu_ps(four.as_ptr()) })
-    }
-
-    #[target_feature(enable = "avx2")]
-    #[inline]
-    #[allow(unsafe_code, reason = "a vector register has no safe way from memory")]
-    fn load_three(v: &DVec3) -> __m256d {
-        let three = _mm256_setr_epi64x(-1, -1, -1, 0);
-        let v: &[f64; 3] = v.as_ref();
-        // SAFETY: three numbers are read from an array of three, as the fourth is masked out; no alignment is asked for.
-        unsafe { _mm256_maskload_pd(v.as_ptr(), three) }
-    }
-
-    #[target_feature(enable = "avx2")]
-    #[inline]
-    #[allow(unsafe_code, reason = "a vector register has no safe way to memory")]
-    fn store(vector: __m256d) -> [f64; 4] {
-        let mut lanes = [0.0; 4];
-        // SAFETY: four numbers are written to an array of four; no alignment is asked for.
-        unsafe { _mm256_storeu_pd(lanes.as_mut_ptr(), vector) };
-        lanes
     }
 }
 
