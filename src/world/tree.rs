@@ -119,8 +119,7 @@ impl Tree {
     /// to go on.
     pub fn traverse_all(&self, origin: DVec3, direction: DVec3, mut leaf: impl FnMut(Range<usize>) -> bool) {
         match self {
-            Tree::Bvh(tree) => tree
-                .traverse(origin, direction, f64::MAX, |range, t_max| if leaf(range) { t_max } else { -1.0 }),
+            Tree::Bvh(tree) => tree.traverse_any(origin, direction, f64::MAX, leaf),
             Tree::KdTree(tree) => {
                 let mut all = Vec::new();
                 tree.traverse(origin, direction, f64::MAX, |range, t_max| {
