@@ -21,6 +21,12 @@ pub fn luminance(rgb: glam::DVec3) -> f64 {
     if rgb.x == rgb.y && rgb.y == rgb.z { rgb.x } else { rgb.dot(glam::DVec3::new(0.2126, 0.7152, 0.0722)) }
 }
 
+/// The mean of the three components: how much light there is, where the eye does not matter.
+#[inline]
+pub fn mean(rgb: glam::DVec3) -> f64 {
+    rgb.element_sum() / 3.0
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

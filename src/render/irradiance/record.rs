@@ -2,6 +2,7 @@
 //! Solution for Diffuse Interreflection* (1988). Knows nothing of how it was found.
 
 use super::hemisphere::Gathered;
+use crate::math::colour::mean;
 use crate::scene::Rgb;
 use glam::DVec3;
 
@@ -37,7 +38,7 @@ impl Record {
     pub fn new(place: Place, gathered: Gathered, [least, most]: [f64; 2]) -> Option<Record> {
         let Gathered { irradiance, by_turning, by_moving, mean_distance, .. } = gathered;
         // A step of the radius shall not take away more light than there is. 0/0 says nothing, and `min` drops it.
-        let radius = mean_distance.min(irradiance.element_sum() / 3.0 / by_moving.steepest()).min(most);
+        let radius = mean_distance.min(mean(irradiance) / by_moving.steepest()).min(most);
         let finite = irradiance.is_finite() && by_turning.is_finite() && by_moving.is_finite();
         (finite && radius >= 0.0).then_some(Record { place, gathered, radius, least })
     }

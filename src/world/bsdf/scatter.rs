@@ -6,6 +6,7 @@
 
 use super::fresnel::{reflect, refract};
 use super::{Bsdf, Mirror, lobes};
+use crate::math::colour::mean;
 use crate::scene::Rgb;
 use crate::world::light::{cosine_hemisphere, to_frame};
 use glam::{DVec2, DVec3};
@@ -140,7 +141,6 @@ impl Bsdf {
             false => share,
         };
         let rest = Rgb::ONE - share;
-        let mean = |c: Rgb| c.element_sum() / 3.0;
         let [d, s, m, t] =
             [mean(rest * self.diffuse), mean(rest * self.specular), mean(share), mean(rest * self.transmit)];
         // What bounces between facets leaves nearly as from a matt surface, and is chosen with it.

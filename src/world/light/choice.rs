@@ -2,7 +2,7 @@
 //! that none is forgotten that does. Of very many, where none would, and where it is not known yet who is lit, half by power.
 
 use super::{Light, Source};
-use crate::scene::Rgb;
+use crate::math::colour::mean;
 use glam::DVec3;
 use std::f64::consts::PI;
 
@@ -99,7 +99,6 @@ impl Light {
     /// About how much it sends into a scene of this radius, watts averaged over the colours. Patterns count as 1.
     fn power(&self, radius: f64) -> f64 {
         let disc = PI * radius * radius;
-        let mean = |c: Rgb| c.element_sum() / 3.0;
         match &self.source {
             Source::Point { intensity, .. } => 4.0 * PI * mean(*intensity),
             Source::Spot { cosines, intensity, .. } => {
@@ -116,6 +115,7 @@ impl Light {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene::Rgb;
 
     fn point(watts: f64) -> Light {
         let source = Source::Point { position: glam::DVec3::ZERO, intensity: Rgb::splat(watts) };

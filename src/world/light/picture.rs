@@ -7,6 +7,7 @@
 //! (Pharr, Jakob & Humphreys, *Physically Based Rendering*, §12.5, with the interpolation taken into the cells).
 
 use crate::math::Affine;
+use crate::math::colour::mean;
 use crate::math::elementary::{atan2, cos, hypot, sin_cos};
 use crate::scene::Rgb;
 use crate::scene::assets::image::{Image, Reading};
@@ -192,7 +193,7 @@ fn band(row: u32, height: u32) -> f64 {
 
 /// How bright each texel of a row is.
 fn brightness(image: &Image, factor: Rgb, row: u32) -> Vec<f64> {
-    let of = |column| (light_of(image, column, row) * factor).element_sum() / 3.0;
+    let of = |column| mean(light_of(image, column, row) * factor);
     (0..image.width()).map(of).collect()
 }
 

@@ -2,7 +2,7 @@
 //! chooses one to ask. A guess, which makes noise smaller or larger and changes no mean.
 
 use super::{Light, Source, attenuation, cone_share};
-use crate::scene::Rgb;
+use crate::math::colour::mean;
 use glam::DVec3;
 use std::f64::consts::PI;
 
@@ -35,7 +35,6 @@ impl Extent {
 impl Light {
     /// About the irradiance at a point of a surface with a unit normal, mean of the colours; patterns count as 1.
     pub(super) fn reach(&self, at: DVec3, normal: DVec3) -> f64 {
-        let mean = |c: Rgb| c.element_sum() / 3.0;
         match &self.source {
             Source::Point { position, intensity } => {
                 mean(*intensity) * self.from_point(at, normal, *position, |_| 1.0)
