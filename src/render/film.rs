@@ -99,10 +99,12 @@ impl Clamped {
         self.taken as f64 / self.all.max(1) as f64
     }
 
-    fn merge(&mut self, other: Clamped) {
-        self.samples += other.samples;
-        self.all += other.all;
-        self.taken += other.taken;
+    fn with(self, other: Clamped) -> Clamped {
+        Clamped {
+            samples: self.samples + other.samples,
+            all: self.all + other.all,
+            taken: self.taken + other.taken,
+        }
     }
 }
 
@@ -135,9 +137,8 @@ impl Taken {
             least,
             most: self.most.max(other.most),
             enough: self.enough + other.enough,
-            clamped: self.clamped,
+            clamped: self.clamped.with(other.clamped),
         };
-        self.clamped.merge(other.clamped);
     }
 
     /// Samples a pixel; 0 without pixels.

@@ -59,13 +59,12 @@ pub fn made(settings: &ResolvedSettings, taken: Taken, rays: u64, seconds: &Seco
 /// What `--clamp` took, where it was asked for.
 fn clamped(settings: &ResolvedSettings, clamped: Clamped) -> String {
     let Some(most) = settings.clamp else { return String::new() };
-    match clamped.samples {
-        0 => format!("  no sample above {most}"),
-        1 => format!("  1 sample dimmed to {most}, {:.2} % of the light", 100.0 * clamped.share()),
-        n => {
-            format!("  {} samples dimmed to {most}, {:.2} % of the light", count(n), 100.0 * clamped.share())
-        }
-    }
+    let samples = match clamped.samples {
+        0 => return format!("  no sample above {most}"),
+        1 => "1 sample".to_owned(),
+        n => format!("{} samples", count(n)),
+    };
+    format!("  {samples} dimmed to {most}, {:.2} % of the light", 100.0 * clamped.share())
 }
 
 /// "4 samples a pixel"; where an error decided, "32 to 512 samples a pixel, 87.5 on average (0.3 % of the pixels want more)".
