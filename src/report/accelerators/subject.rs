@@ -8,6 +8,7 @@ use crate::world::shape::triangle::{Sheared, cut::cut, leaf};
 use crate::world::tree::Tree;
 use crate::world::{bvh, kdtree};
 use glam::DVec3;
+use std::ops::Range;
 
 /// What makes the tree.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -88,12 +89,13 @@ impl<'m> Subject<'m> {
         Subject { mesh, corners, tree }
     }
 
-    /// Memory of the nodes and of what is in the leaves, bytes.
+    /// Memory of the nodes and of what is in the leaves, bytes; with the corners of its triangles, which stand in the tree's order.
     pub fn bytes(&self) -> [usize; 2] {
-        match &self.tree {
+        let [nodes, leaves] = match &self.tree {
             Tree::Bvh(tree) => tree.bytes(),
             Tree::KdTree(tree) => tree.bytes(),
-        }
+        };
+        [nodes, leaves + self.corners.bytes()]
     }
 
     /// How often leaves name triangles.
@@ -114,26 +116,54 @@ impl<'m> Subject<'m> {
     pub fn meet(&self, line: &Line, any: bool) -> Option<(f64, u32)> {
         let mut asked = Asked::new(self, line, any)?;
         let LocalRay { origin, direction } = asked.ray;
-        self.tree.traverse(origin, direction, asked.limit, |range, _| asked.leaf(range));
+        let limit = asked.limit;
+        if any {
+            self.tree.traverse_any(origin, direction, limit, |range| asked.goes_on(range));
+        } else {
+            self.tree.traverse(origin, direction, limit, |range, _| asked.limit_after(range));
+        }
         asked.found()
+    }
+
+    /// How far a line goes to one triangle; none where it misses that.
+    pub fn distance_to(&self, line: &Line, triangle: u32) -> Option<f64> {
+        let asked = Asked::new(self, line, false)?;
+        let corners = self.mesh.triangles[triangle as usize].map(|p| self.mesh.positions[p as usize]);
+        let meet = asked.sheared.meet(corners.each_ref(), asked.limit)?;
+        Some(meet.t / asked.per_line)
     }
 
     /// What [`Subject::meet`] costs.
     pub fn work(&self, line: &Line, any: bool) -> Work {
         let Some(mut asked) = Asked::new(self, line, any) else { return Work::default() };
         let LocalRay { origin, direction } = asked.ray;
-        let limit = asked.limit;
-        let mut work = Work::default();
-        let leaf = |range: std::ops::Range<usize>, _: f64| {
-            work.tests += range.len() as u64;
-            asked.leaf(range)
-        };
-        let mut nodes = 0;
+        let (limit, mut nodes, mut tests) = (asked.limit, 0, 0);
+        let mut count = |range: &Range<usize>| tests += range.len() as u64;
         match &self.tree {
-            Tree::Bvh(tree) => nodes = tree.traverse_counting(origin, direction, limit, leaf),
-            Tree::KdTree(tree) => tree.traverse_counting(origin, direction, limit, || nodes += 1, leaf),
+            Tree::Bvh(tree) if any => {
+                nodes = tree.traverse_any_counting(origin, direction, limit, |range| {
+                    count(&range);
+                    asked.goes_on(range)
+                });
+            }
+            Tree::Bvh(tree) => {
+                nodes = tree.traverse_counting(origin, direction, limit, |range, _| {
+                    count(&range);
+                    asked.limit_after(range)
+                });
+            }
+            Tree::KdTree(tree) => tree.traverse_counting(
+                origin,
+                direction,
+                limit,
+                || nodes += 1,
+                |range, _| {
+                    count(&range);
+                    asked.limit_after(range)
+                },
+            ),
         }
-        Work { nodes, ..work }
+        Work { nodes, tests }
     }
 }
 
@@ -157,7 +187,7 @@ impl<'a, 'm> Asked<'a, 'm> {
     }
 
     #[inline(always)]
-    fn leaf(&mut self, range: std::ops::Range<usize>) -> f64 {
+    fn leaf(&mut self, range: Range<usize>) {
         let Subject { mesh, corners, tree } = self.subject;
         let asked = leaf::Asked { ray: &self.sheared, limit: self.limit, any: self.any };
         if let Some((place, meet)) = corners.nearest(&mesh.positions, range, &asked, |i| tree.order()[i]) {
@@ -167,6 +197,19 @@ impl<'a, 'm> Asked<'a, 'm> {
                 self.limit = meet.t;
             }
         }
+    }
+
+    /// As a traversal without order asks.
+    #[inline(always)]
+    fn goes_on(&mut self, range: Range<usize>) -> bool {
+        self.leaf(range);
+        self.best.is_none()
+    }
+
+    /// As a traversal in order asks.
+    #[inline(always)]
+    fn limit_after(&mut self, range: Range<usize>) -> f64 {
+        self.leaf(range);
         if self.any && self.best.is_some() { -1.0 } else { self.limit }
     }
 

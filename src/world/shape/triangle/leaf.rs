@@ -52,6 +52,14 @@ impl Corners {
         }
     }
 
+    /// Memory, bytes.
+    pub fn bytes(&self) -> usize {
+        match self {
+            Corners::Narrow(all) => size_of_val(&**all),
+            Corners::Shared(all) => size_of_val(&**all),
+        }
+    }
+
     /// The nearest meeting of a range of positions, or any, and where it is; of equally near ones that with the smallest `number`.
     #[inline]
     pub fn nearest(
