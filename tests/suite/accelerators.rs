@@ -1,6 +1,7 @@
 //! Every tree against a test of every triangle, and the work that trees leave to a ray against a table. `OGEE_BLESS=1` writes the table;
 //! `OGEE_RAYS=1000000` asks so many rays of each mesh, and a tenth as many at its edges.
 
+use crate::run::Folder;
 use ogee::diag::{SourceId, Span};
 use ogee::geometry::mesh::Mesh;
 use ogee::report::accelerators::lines::{Set, anywhere, at_edges, sets};
@@ -134,4 +135,34 @@ fn rays_cost_the_nodes_and_tests_of_the_table() {
         .map(|((name, now), (_, then))| format!("{name}: nodes and tests {now:?}, were {then:?}"))
         .collect();
     assert!(off.is_empty(), "more than 2 % off:\n{}", off.join("\n"));
+}
+
+#[test]
+fn rays_in_files_are_asked_answered_and_judged_order_by_order() {
+    let folder = Folder::with(&[(
+        "mesh.obj",
+        "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 0 1 1\nf 1 2 3\nf 4 5 6\n",
+    )]);
+    let write = |name: &str, words: &[u32]| {
+        let bytes: Vec<u8> = words.iter().flat_map(|word| word.to_le_bytes()).collect();
+        std::fs::write(folder.path().join(name), bytes).expect("a file");
+    };
+    // Up through both triangles, and past them.
+    let rays = [[0.2, 0.2, -1.0, 0.0, 0.0, 2.0, 9.0], [0.8, 0.8, -1.0, 0.0, 0.0, 2.0, 9.0f32]];
+    write("two.rays", &rays.concat().iter().map(|number| number.to_bits()).collect::<Vec<_>>());
+    write("other", &[1, u32::MAX, 0, 0]);
+    let orders = "build\nclosest two.rays 0 99\nanswers two.rays ours\njudge two.rays other 9\n";
+    let run = folder.ogee_fed("bench rays mesh.obj", orders);
+    let said: Vec<String> = String::from_utf8_lossy(&run.stdout).lines().map(str::to_owned).collect();
+    assert!(
+        said.len() == 4 && said[0].parse::<usize>().is_ok_and(|bytes| bytes > 0),
+        "{said:?} {}",
+        run.stderr
+    );
+    assert_eq!(said[1..], ["done", "done", "0 0 1 1 1 0"]);
+    let ours = std::fs::read(folder.path().join("ours")).expect("the answers");
+    let words: Vec<u32> = ours.as_chunks::<4>().0.iter().map(|bytes| u32::from_le_bytes(*bytes)).collect();
+    assert_eq!(words, [0, u32::MAX, 0.5f32.to_bits(), f32::INFINITY.to_bits()]);
+    assert_eq!(folder.ogee_fed("bench rays mesh.obj", "sing\n").code, Some(2));
+    assert_eq!(folder.ogee("bench rays mesh.obj --tree oak").code, Some(2));
 }

@@ -1,6 +1,7 @@
 //! The command line as clap reads it. Help, completions and man pages come from here and from nowhere else.
 
 mod accelerators;
+mod rays;
 mod tracers;
 
 pub use accelerators::Accelerators;
@@ -8,6 +9,7 @@ use clap::{Args, Parser, Subcommand, ValueEnum, ValueHint};
 use clap_complete::Shell;
 use ogee::render::features::Layer;
 use ogee::scene::{Accelerator, PixelFilter, SamplerKind, TracerKind};
+pub use rays::Rays;
 use std::ops::Range;
 use std::path::PathBuf;
 use std::str::FromStr;
@@ -75,6 +77,9 @@ pub enum Bench {
     Tracers(Tracers),
     /// Put meshes under several trees, and write what building, memory and rays cost, and how that grows; exits 1 where a hit is wrong
     Accelerators(Accelerators),
+    /// Ask a mesh about files of rays as standard input says, for comparisons with other programs
+    #[command(hide = true)]
+    Rays(Rays),
     /// Write the report again from results alone
     Report(BenchReport),
     /// Ask one variant for one input that a report names

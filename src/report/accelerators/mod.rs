@@ -6,6 +6,7 @@
 pub mod lines;
 pub mod meshes;
 pub mod page;
+pub mod rays;
 pub mod subject;
 
 use crate::geometry::mesh::Mesh;

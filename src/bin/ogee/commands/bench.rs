@@ -2,6 +2,7 @@
 
 mod accelerators;
 mod counts;
+mod rays;
 mod tracers;
 
 use crate::args::{Bench, BenchReport, Kernels, Repro};
@@ -30,6 +31,7 @@ pub fn run(args: &Bench) -> Ended {
         Bench::Kernels(args) => kernels(args),
         Bench::Tracers(args) => tracers::run(args),
         Bench::Accelerators(args) => accelerators::run(args),
+        Bench::Rays(args) => rays::run(args),
         Bench::Report(args) => report(args),
         Bench::Repro(args) => repro(args),
         Bench::Count(args) => counts::make_calls(&args.component),

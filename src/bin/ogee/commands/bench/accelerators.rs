@@ -63,7 +63,7 @@ fn growing(plan: &Plan) -> Vec<AcceleratorRow> {
 }
 
 /// A file's mesh, with its name.
-fn read(path: &Path) -> Result<(String, Mesh), Failure> {
+pub fn read(path: &Path) -> Result<(String, Mesh), Failure> {
     commands::try_to_read(path)?;
     let loader = DiskLoader;
     let nowhere = Span::new(SourceId(0), 0, 0);
