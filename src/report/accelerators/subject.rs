@@ -15,6 +15,8 @@ use std::ops::Range;
 pub enum Builder {
     /// The hierarchy of boxes that scenes use.
     Bvh,
+    /// The same, built from the triangles up.
+    BvhBottomUp,
     /// The same, halved by number.
     BvhMedian,
     /// The kd-tree that scenes use.
@@ -27,13 +29,14 @@ pub enum Builder {
 
 impl Builder {
     /// All that make a tree.
-    pub const TREES: [Builder; 4] =
-        [Builder::Bvh, Builder::BvhMedian, Builder::KdTree, Builder::KdTreeOfBoxes];
+    pub const TREES: [Builder; 5] =
+        [Builder::Bvh, Builder::BvhBottomUp, Builder::BvhMedian, Builder::KdTree, Builder::KdTreeOfBoxes];
 
     /// As reports name it.
     pub fn name(self) -> &'static str {
         match self {
             Builder::Bvh => "bvh",
+            Builder::BvhBottomUp => "bvh, bottom up",
             Builder::BvhMedian => "bvh, halves by number",
             Builder::KdTree => "kdtree",
             Builder::KdTreeOfBoxes => "kdtree of boxes",
@@ -79,6 +82,7 @@ impl<'m> Subject<'m> {
         let clip = |i: usize, cell: &Aabb| cut(corners(i), cell);
         let tree = match builder {
             Builder::Bvh => Tree::Bvh(bvh::Tree::build_of_triangles(n, bounds)),
+            Builder::BvhBottomUp => Tree::Bvh(bvh::Tree::build_bottom_up(n, bounds)),
             Builder::BvhMedian => Tree::Bvh(bvh::Tree::build_median(n, bounds)),
             Builder::KdTree => Tree::build_of_triangles(Accelerator::KdTree, n, bounds, clip),
             Builder::KdTreeOfBoxes => Tree::KdTree(kdtree::Tree::build(n, bounds)),

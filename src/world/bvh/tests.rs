@@ -86,10 +86,11 @@ fn a_hit_in_the_first_box_does_not_hide_a_nearer_one_in_the_second() {
 #[test]
 fn the_tree_is_the_same_on_any_number_of_threads() {
     let boxes = boxes(40_000, DVec3::ZERO, 9);
+    let bounds = |i: usize| boxes[i];
     let on = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool");
-        let tree = pool.install(|| Tree::build(boxes.len(), |i| boxes[i]));
-        (tree.order().to_vec(), format!("{:?}", tree.nodes))
+        let made = || [Tree::build(boxes.len(), bounds), Tree::build_bottom_up(boxes.len(), bounds)];
+        pool.install(made).map(|tree| (tree.order().to_vec(), format!("{:?}", tree.nodes)))
     };
     assert!(on(1) == on(3));
 }

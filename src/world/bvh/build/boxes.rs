@@ -102,6 +102,13 @@ impl Item {
         bounds.lower.w = f32::from_bits(number);
         Item(bounds)
     }
+
+    /// Its box without the number.
+    pub fn bare(&self) -> Box32 {
+        let mut bounds = self.0;
+        bounds.lower.w = 0.0;
+        bounds
+    }
 }
 
 impl Boxed for Item {

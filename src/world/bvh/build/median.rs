@@ -1,8 +1,8 @@
 //! Halves by number, as a textbook splits: what the heuristic of areas is measured against. No scene asks for it.
 
-use super::boxes::{Box32, Boxed, Item, bounds_of};
+use super::boxes::{Boxed, Item, bounds_of};
 use super::split::halve;
-use super::{finish, prepare};
+use super::{finish, prepare, put};
 use crate::math::Aabb;
 use crate::world::bvh::{Node, Tree, WIDTH};
 
@@ -51,11 +51,4 @@ fn grow(run: &mut [Item], first: usize, nodes: &mut Vec<Node>) -> u32 {
         node.set_child(slot, at, count);
     }
     index as u32
-}
-
-fn put(node: &mut Node, slot: usize, bounds: &Box32) {
-    for a in 0..3 {
-        node.rows[a][slot] = bounds.lower(a);
-        node.rows[a + 3][slot] = bounds.upper(a);
-    }
 }

@@ -2,7 +2,12 @@
 //!
 //! Wald, *On fast construction of SAH-based bounding volume hierarchies*, 2007; MacDonald & Booth 1990 for the heuristic.
 //! Subtrees are built in parallel and joined in a fixed order: the tree does not depend on the number of threads.
+//!
+//! There are no spatial splits (Stich, Friedrich & Dietrich, *Spatial splits in bounding volume hierarchies*, 2009), which cut items at a
+//! plane and name them on both sides. Tried on three evenly tessellated meshes of 82 thousand to 1.3 million triangles they gained
+//! nothing; on long beams across the axes they spared 18 % of the tests for twice the references.
 
+mod bottom_up;
 mod boxes;
 mod cells;
 mod children;
@@ -34,6 +39,14 @@ fn prepare(count: usize, bounds_of: &(impl Fn(usize) -> Aabb + Sync)) -> Prepare
     let (bounds, unbounded) = survey(count, bounds_of);
     let frame = Frame::around(bounds);
     Prepared { bounds, unbounded, frame, items: narrow(count, bounds_of, &frame) }
+}
+
+/// Enters the box of a child.
+fn put(node: &mut Node, slot: usize, bounds: &Box32) {
+    for a in 0..3 {
+        node.rows[a][slot] = bounds.lower(a);
+        node.rows[a + 3][slot] = bounds.upper(a);
+    }
 }
 
 /// The tree of nodes over items in their order; those without a finite box follow it.

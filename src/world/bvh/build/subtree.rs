@@ -3,6 +3,7 @@
 use super::boxes::{Boxed, Item};
 use super::cells::{Cell, Cells};
 use super::children::{Children, Start};
+use super::put;
 use super::split::{Bins, MAX_LEAF, Part};
 use crate::world::bvh::{Node, WIDTH};
 use rayon::prelude::*;
@@ -118,7 +119,7 @@ fn apart(
 }
 
 /// Appends nodes that count from 0; gives the index of the first.
-fn append(below: Vec<Node>, nodes: &mut Vec<Node>) -> u32 {
+pub(super) fn append(below: Vec<Node>, nodes: &mut Vec<Node>) -> u32 {
     let base = nodes.len() as u32;
     nodes.extend(below.into_iter().map(|mut node| {
         for slot in 0..WIDTH {
@@ -133,10 +134,7 @@ fn append(below: Vec<Node>, nodes: &mut Vec<Node>) -> u32 {
 }
 
 fn fill(node: &mut Node, slot: usize, part: &Part, below: Option<u32>) {
-    for a in 0..3 {
-        node.rows[a][slot] = part.bounds.lower(a);
-        node.rows[a + 3][slot] = part.bounds.upper(a);
-    }
+    put(node, slot, &part.bounds);
     match below {
         Some(index) => node.set_child(slot, index, 0),
         None => node.set_child(slot, part.first as u32, part.n_items as u32),
