@@ -12,9 +12,16 @@ pub struct Page {
     pub text: String,
 }
 
+/// Another report: its title, and the path of its page from here.
+pub type Link = (String, String);
+
 /// The whole report: `index.md` and a plot for each component.
-pub fn render(machine: &Machine, rows: &[Row]) -> Vec<Page> {
+pub fn render(machine: &Machine, rows: &[Row], beside: &[Link]) -> Vec<Page> {
     let mut index = head(machine);
+    if !beside.is_empty() {
+        let links: Vec<_> = beside.iter().map(|(title, path)| format!("[{title}]({path})")).collect();
+        let _ = write!(index, "\nOther reports: {}.\n", links.join("; "));
+    }
     bars(&mut index, rows);
     prices(&mut index, rows);
     let mut pages = Vec::new();
@@ -306,7 +313,7 @@ mod tests {
     #[test]
     fn a_default_off_the_frontier_is_said_with_its_reason() {
         let slow = Row { note: "it is sure".into(), ..row("slow", 2.0, 2.0, true) };
-        let pages = render(&Machine::default(), &[row("fast", 1.0, 1.0, false), slow]);
+        let pages = render(&Machine::default(), &[row("fast", 1.0, 1.0, false), slow], &[]);
         assert!(
             pages[0]
                 .text
@@ -321,7 +328,7 @@ mod tests {
     #[test]
     fn a_broken_bar_is_a_known_failure_and_the_price_is_told() {
         let broken = Row { bar: Some(1.0), ..row("slow", 2.0, 2.0, true) };
-        let text = &render(&Machine::default(), &[row("fast", 1.0, 1.0, false), broken])[0].text;
+        let text = &render(&Machine::default(), &[row("fast", 1.0, 1.0, false), broken], &[])[0].text;
         assert!(text.contains("0 of 1 bars") && text.contains("Known failures:"), "{text}");
         assert!(text.contains("| cubic evaluation | slow | 2.00 … 2.00 |"), "{text}");
     }
@@ -329,7 +336,7 @@ mod tests {
     #[test]
     fn chains_have_a_column_where_one_was_timed() {
         let chained = Row { ns_chain: Some(7.0), ..row("slow", 2.0, 2.0, true) };
-        let text = &render(&Machine::default(), &[row("fast", 1.0, 1.0, false), chained])[0].text;
+        let text = &render(&Machine::default(), &[row("fast", 1.0, 1.0, false), chained], &[])[0].text;
         assert!(text.contains("| ns | in a chain, ns | instructions | ratio"), "{text}");
         assert!(text.contains("| slow ★ | 2.00 ± 0 | 7.00 | – | 2.00"), "{text}");
         assert!(text.contains("| fast | 1.00 ± 0 | – | – | 1.00"), "{text}");
@@ -339,7 +346,7 @@ mod tests {
     fn the_page_says_who_counted_instructions_or_that_nobody_did() {
         let text = |machine: &Machine, instructions| {
             let one = Row { instructions, ..row("fast", 1.0, 1.0, false) };
-            render(machine, &[one])[0].text.clone()
+            render(machine, &[one], &[])[0].text.clone()
         };
         assert!(text(&Machine::default(), None).contains("their column is empty"));
         let machine = Machine { counter: "valgrind-3".into(), ..Machine::default() };

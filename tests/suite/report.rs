@@ -145,8 +145,11 @@ fn results_alone_render_the_same_report() {
         again.extend(store::read::<Row>(&file.text).expect("what was written can be read").1);
     }
     store::sort(&mut again);
-    let text = |rows: &[Row]| render(&machine, rows).into_iter().map(|page| page.text).collect::<Vec<_>>();
+    let text =
+        |rows: &[Row]| render(&machine, rows, &[]).into_iter().map(|page| page.text).collect::<Vec<_>>();
     assert!(text(&again) == text(rows()));
+    let linked = render(&machine, &again, &[("Trees".into(), "trees/index.md".into())]);
+    assert!(linked[0].text.contains("\nOther reports: [Trees](trees/index.md).\n"));
 }
 
 const SMALL_ROOM: &str = "render { size 200, 100 }

@@ -122,28 +122,13 @@ pub fn measure(name: &str, mesh: &Mesh, plan: &Plan) -> Vec<AcceleratorRow> {
     made.iter().enumerate().map(row).collect()
 }
 
-/// The trees over a mesh of several sizes, each made when it is asked for.
-pub fn over_sizes(
-    name: &str,
-    plan: &Plan,
-    make: impl Fn(usize) -> Option<Mesh>,
-    mut tell: impl FnMut(usize),
-) -> Vec<AcceleratorRow> {
-    let mut rows = Vec::new();
-    for size in plan.sizes {
-        tell(*size);
-        rows.extend(make(*size).map(|mesh| measure(name, &mesh, plan)).unwrap_or_default());
-    }
-    rows.iter_mut().for_each(|row| row.grows = "triangles".into());
-    rows
-}
-
-/// The trees over one mesh for pictures of several sizes.
-pub fn over_pixels(name: &str, mesh: &Mesh, plan: &Plan) -> Vec<AcceleratorRow> {
+/// The trees over one mesh for pictures of several sizes; `hear` is told of each side before it is measured.
+pub fn over_pixels(name: &str, mesh: &Mesh, plan: &Plan, mut hear: impl FnMut(usize)) -> Vec<AcceleratorRow> {
     let made: Vec<(Subject<'_>, f64)> = Builder::TREES.iter().map(|builder| built(mesh, *builder)).collect();
     let subjects: Vec<&Subject<'_>> = made.iter().map(|(subject, _)| subject).collect();
     let mut rows = Vec::new();
     for side in plan.sides {
+        hear(*side);
         let set = Set { name: "camera", any: false, lines: camera(mesh, *side) };
         let rays = of_set(&set, &subjects, plan.rounds);
         rows.extend(made.iter().zip(rays).zip(Builder::TREES).map(|(((subject, build), rays), builder)| {
@@ -179,25 +164,36 @@ fn built(mesh: &Mesh, builder: Builder) -> (Subject<'_>, f64) {
     (subject, started.elapsed().as_secs_f64())
 }
 
+/// A set of rays that took so long is not asked again, in seconds: long rounds differ little.
+const LONG: f64 = 10.0;
+/// So many rays of a set are counted at the most, evenly chosen.
+const MOST_COUNTED: usize = 1 << 18;
+
 /// A row for each tree, timed in turn.
 fn of_set(set: &Set, subjects: &[&Subject<'_>], rounds: usize) -> Vec<RayRow> {
-    let mut seconds = vec![Vec::new(); subjects.len()];
-    for _ in 0..rounds.max(1) {
-        for (subject, own) in subjects.iter().zip(&mut seconds) {
+    let n = set.lines.len();
+    let mut seconds = vec![f64::INFINITY; subjects.len()];
+    let begun = Instant::now();
+    for round in 0..rounds.max(1) {
+        if round > 0 && begun.elapsed().as_secs_f64() > LONG {
+            break;
+        }
+        for (subject, best) in subjects.iter().zip(&mut seconds) {
             let started = Instant::now();
             let met = set.lines.iter().filter(|line| subject.meet(line, set.any).is_some()).count();
             std::hint::black_box(met);
-            own.push(started.elapsed().as_secs_f64());
+            *best = best.min(started.elapsed().as_secs_f64());
         }
     }
-    let n = set.lines.len();
-    let row = |(subject, seconds): (&&Subject<'_>, &Vec<f64>)| {
-        let work = work(subject, set);
-        let per_ray = |count: u64| count as f64 / n.max(1) as f64;
+    let some = set.lines.iter().step_by(n.div_ceil(MOST_COUNTED).max(1));
+    let counted = Set { lines: some.copied().collect(), ..*set };
+    let row = |(subject, seconds): (&&Subject<'_>, &f64)| {
+        let work = work(subject, &counted);
+        let per_ray = |count: u64| count as f64 / counted.lines.len().max(1) as f64;
         RayRow {
             name: set.name.into(),
             n,
-            mrays: n as f64 / seconds.iter().copied().fold(f64::INFINITY, f64::min) / 1e6,
+            mrays: n as f64 / seconds / 1e6,
             nodes: per_ray(work.nodes),
             tests: per_ray(work.tests),
         }

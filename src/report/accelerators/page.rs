@@ -29,7 +29,8 @@ fn head(machine: &Machine) -> String {
          `ogee bench accelerators` measured it, `ogee bench report` wrote this page from [results](results) alone. {told}.\n\n\
          All trees stand over the same triangles with the same test of each, as scenes do. Bytes are for \
          each triangle: the tree's nodes, and what is in its leaves; those of the mesh itself come on top and are the same for all. Rays are on one \
-         thread, in turn, the fastest of several rounds; building takes all threads. Nodes and tests are counted, and the same on every machine; the \
+         thread, in turn, the fastest of several rounds; building takes all threads. Nodes and tests are counted (of very many rays on some, evenly \
+         chosen), and the same on every machine; the \
          nodes of `bvh` have eight children, those of `kdtree` two, and its leaves count as nodes. Wrong are rays that meet \
          another triangle, at another distance, or are blocked otherwise, than by a test of every triangle: half of them go through edges and corners. \
          `bvh` and `kdtree` are what scenes use; the others are what they are measured against.\n",

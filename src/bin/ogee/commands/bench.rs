@@ -12,7 +12,7 @@ use ogee::diag::nearest;
 use ogee::math::hex::parse_hex_list;
 use ogee::report::accelerators::{self as of_accelerators, AcceleratorRow};
 use ogee::report::components::{COMPONENTS, SEED};
-use ogee::report::page::{Page, render, short};
+use ogee::report::page::{Link, Page, render, short};
 use ogee::report::row::{Machine, Row};
 use ogee::report::tracers::TracerRow;
 use ogee::report::trial::{Only, Plan};
@@ -58,7 +58,7 @@ fn kernels(args: &Kernels) -> Ended {
         _ => {}
     }
     write(&args.out, &store::write(&machine, &rows, |row| &row.component))?;
-    write(&args.out, &render(&machine, &rows))?;
+    write(&args.out, &render(&machine, &rows, &beside(&args.out)))?;
     tell(format!("wrote {}", args.out.join("index.md").display()));
     let broken: Vec<&Row> = rows.iter().filter(|row| !row.within_bar()).collect();
     for row in &broken {
@@ -114,9 +114,22 @@ fn report(args: &BenchReport) -> Ended {
     } else {
         let (machine, mut rows) = rows_of(&texts)?;
         store::sort(&mut rows);
-        write(&args.folder, &render(&machine, &rows))?;
+        write(&args.folder, &render(&machine, &rows, &beside(&args.folder)))?;
     }
     Ok(Exit::Done)
+}
+
+/// The reports in folders of a report's folder, by title, in the order of their names.
+fn beside(report: &Path) -> Vec<Link> {
+    let folders = std::fs::read_dir(report).into_iter().flatten().flatten();
+    let link = |folder: std::fs::DirEntry| {
+        let text = std::fs::read_to_string(folder.path().join("index.md")).ok()?;
+        let title = text.lines().next()?.strip_prefix("# ")?.to_owned();
+        Some((title, format!("{}/index.md", folder.file_name().to_str()?)))
+    };
+    let mut links: Vec<Link> = folders.filter_map(link).collect();
+    links.sort_by(|a, b| a.1.cmp(&b.1));
+    links
 }
 
 /// The machine of the last file, and the rows of all.

@@ -7,7 +7,8 @@ use crate::speech::{Ended, Exit, Failure, tell};
 use ogee::diag::{SourceId, Span};
 use ogee::geometry::mesh::Mesh;
 use ogee::report::accelerators::meshes::{KINDS, procedural};
-use ogee::report::accelerators::{AcceleratorRow, Plan, measure, over_pixels, over_sizes, page};
+use ogee::report::accelerators::{AcceleratorRow, Plan, measure, over_pixels, page};
+use ogee::report::row::Machine;
 use ogee::report::store;
 use ogee::scene::assets::{AssetCache, DiskLoader};
 use std::path::Path;
@@ -17,7 +18,7 @@ const GROWS: &str = "hills";
 /// Triangles of each kind, and of the picture that grows: of the first alone where a minute must do.
 const TRIANGLES: usize = 20_000;
 
-/// Measures all meshes, then writes results, page and plots.
+/// Measures mesh after mesh. Results, page and plots are written whenever one is done, so that who has no time for the rest has those.
 pub fn run(args: &Accelerators) -> Ended {
     let plan = match (args.quick, args.full) {
         (true, _) => Plan::QUICK,
@@ -26,23 +27,39 @@ pub fn run(args: &Accelerators) -> Ended {
     };
     let files: Vec<(String, Mesh)> = args.meshes.iter().map(|path| read(path)).collect::<Result<_, _>>()?;
     make_results(&args.out)?;
-    let machine = machine(super::ACCELERATORS);
-    let mut rows = growing(&plan);
+    let mut report = Report { out: &args.out, machine: machine(super::ACCELERATORS), rows: Vec::new() };
     let kinds = if args.quick { &KINDS[..1] } else { &KINDS[..] };
     for kind in kinds {
-        rows.extend(procedural(kind, TRIANGLES).map(|mesh| one(kind, &mesh, &plan)).unwrap_or_default());
+        if let Some(mesh) = procedural(kind, TRIANGLES) {
+            report.add(one(kind, &mesh, &plan))?;
+        }
     }
     for (name, mesh) in &files {
-        rows.extend(one(name, mesh, &plan));
+        report.add(one(name, mesh, &plan))?;
     }
-    write(&args.out, &store::write(&machine, &rows, |row| &row.mesh))?;
-    write(&args.out, &page::render(&machine, &rows))?;
+    growing(&plan, |rows| report.add(rows))?;
     tell(format!("wrote {}", args.out.join("index.md").display()));
-    let wrong: usize = rows.iter().map(|row| row.wrong).sum();
+    let wrong: usize = report.rows.iter().map(|row| row.wrong).sum();
     if wrong > 0 {
         tell(format!("{wrong} rays meet something else than by a test of every triangle"));
     }
     Ok(if wrong == 0 { Exit::Done } else { Exit::Scene })
+}
+
+/// A report under way.
+struct Report<'a> {
+    out: &'a Path,
+    machine: Machine,
+    rows: Vec<AcceleratorRow>,
+}
+
+impl Report<'_> {
+    /// Adds rows and writes all that there are.
+    fn add(&mut self, rows: Vec<AcceleratorRow>) -> Result<(), Failure> {
+        self.rows.extend(rows);
+        write(self.out, &store::write(&self.machine, &self.rows, |row| &row.mesh))?;
+        write(self.out, &page::render(&self.machine, &self.rows))
+    }
 }
 
 fn one(name: &str, mesh: &Mesh, plan: &Plan) -> Vec<AcceleratorRow> {
@@ -51,15 +68,20 @@ fn one(name: &str, mesh: &Mesh, plan: &Plan) -> Vec<AcceleratorRow> {
 }
 
 /// How cost grows with triangles, and with pixels.
-fn growing(plan: &Plan) -> Vec<AcceleratorRow> {
+fn growing(
+    plan: &Plan,
+    mut done: impl FnMut(Vec<AcceleratorRow>) -> Result<(), Failure>,
+) -> Result<(), Failure> {
     let name = format!("growing {GROWS}");
-    let hear = |size| tell(format!("{name}: {size} triangles"));
-    let mut rows = over_sizes(&name, plan, |size| procedural(GROWS, size), hear);
-    if let Some(mesh) = procedural(GROWS, TRIANGLES) {
-        tell(format!("{name}: pictures"));
-        rows.extend(over_pixels(&name, &mesh, plan));
+    for mesh in plan.sizes.iter().filter_map(|size| procedural(GROWS, *size)) {
+        let grown = |row| AcceleratorRow { grows: "triangles".into(), ..row };
+        done(one(&name, &mesh, plan).into_iter().map(grown).collect())?;
     }
-    rows
+    if let Some(mesh) = procedural(GROWS, TRIANGLES) {
+        let hear = |side| tell(format!("{name}: {side} × {side} pixels"));
+        done(over_pixels(&name, &mesh, plan, hear))?;
+    }
+    Ok(())
 }
 
 /// A file's mesh, with its name.
