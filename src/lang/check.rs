@@ -167,7 +167,9 @@ fn coerce_values(
 ) -> Outcome<()> {
     let mut outcome = Ok(());
     for (i, (value, span)) in given.values.iter_mut().enumerate() {
-        if let Err(reported) = coerce_or_report(ctx, property.name, &types(i), value, *span) {
+        let asked =
+            Asked { name: property.name, optional: !property.required && property.default.is_empty() };
+        if let Err(reported) = coerce_asked(ctx, &asked, &types(i), value, *span) {
             outcome = Err(reported);
         }
     }
@@ -184,13 +186,32 @@ pub fn coerce_or_report(
     value: &mut Value,
     span: Span,
 ) -> Outcome<()> {
+    coerce_asked(ctx, &Asked { name, optional: false }, types, value, span)
+}
+
+/// For what a value is given.
+struct Asked<'a> {
+    /// The property; empty for a texture among arguments.
+    name: &'a str,
+    /// True where it can be left out, and nothing stands for it then.
+    optional: bool,
+}
+
+fn coerce_asked(
+    ctx: &mut dyn Context,
+    asked: &Asked<'_>,
+    types: &[Type],
+    value: &mut Value,
+    span: Span,
+) -> Outcome<()> {
+    let name = asked.name;
     let fit = types.iter().copied().find(|t| coerce::fits(ctx, *t, value));
     match fit.map(|t| coerce::coerce(ctx, t, value, span)) {
         Some(Ok(normal)) => {
             *value = normal;
             Ok(())
         }
-        Some(Err(misfit)) => Err(report_misfit(ctx, &subject(name), misfit, value, span)),
+        Some(Err(misfit)) => Err(report_misfit(ctx, asked, misfit, value, span)),
         None => {
             let said = wrong_type(&subject(name), name, types, value, span);
             Err(ctx.fail(said))
@@ -202,7 +223,14 @@ fn subject(name: &str) -> String {
     if name.is_empty() { "a texture".into() } else { format!("`{name}`") }
 }
 
-fn report_misfit(ctx: &mut dyn Context, what: &str, misfit: Misfit, value: &Value, span: Span) -> Reported {
+fn report_misfit(
+    ctx: &mut dyn Context,
+    asked: &Asked<'_>,
+    misfit: Misfit,
+    value: &Value,
+    span: Span,
+) -> Reported {
+    let what = subject(asked.name);
     match misfit {
         Misfit::Reported(reported) => reported,
         Misfit::NotFinite => {
@@ -221,6 +249,12 @@ fn report_misfit(ctx: &mut dyn Context, what: &str, misfit: Misfit, value: &Valu
                 span,
                 format!("{what} must be {expected}, and this is {}", coerce::shown(value)),
             );
+            let nothing = matches!(value, Value::Number(x) if *x == 0.0);
+            let hint = if nothing && asked.optional {
+                format!("leave {what} out where it is not wanted")
+            } else {
+                hint
+            };
             ctx.fail(if hint.is_empty() { said } else { said.hint(hint) })
         }
     }
