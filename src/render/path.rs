@@ -124,6 +124,8 @@ struct Walk<'a> {
     stage: Stage,
     /// What is left of the weight at the next surface that spreads light: records told the rest.
     kept: Rgb,
+    /// Those that are there so far, while one is made.
+    records: Option<&'a Records>,
     /// Of its first segment, once it has met something.
     first_length: f64,
     sum: Rgb,
@@ -242,12 +244,15 @@ impl Path {
 
     /// Adds what records tell at a surface: what its matt part sends on of light from other matt surfaces. False where none holds.
     fn is_known(&self, world: &World, hit: &Hit<'_>, bsdf: &Bsdf, walk: &mut Walk<'_>) -> bool {
-        let Some(records) = &self.records else { return false };
+        if self.records.is_none() && walk.records.is_none() {
+            return false;
+        }
         let matt = bsdf.matt();
         if matt == Rgb::ZERO {
             return false;
         }
-        let told = records.told(world, hit, bsdf, walk.segment);
+        let ready = self.records.as_ref().and_then(|records| records.told(world, hit, bsdf, walk.segment));
+        let told = ready.or_else(|| walk.records?.roughly(world, hit, bsdf, walk.segment));
         walk.sum += walk.weight * matt * told.unwrap_or(Rgb::ZERO) / PI;
         told.is_some()
     }
@@ -384,6 +389,7 @@ impl<'a> Walk<'a> {
             seen: true,
             stage: Stage::Whole,
             kept: Rgb::ONE,
+            records: None,
             first_length: f64::INFINITY,
             sum: Rgb::ZERO,
             sampler,

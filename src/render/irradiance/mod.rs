@@ -86,6 +86,15 @@ impl Records {
         (weights > 0.0).then(|| sum / weights)
     }
 
+    /// The irradiance of a place by the record that errs least there, if it holds: for what is only one of many that a record gathers,
+    /// which need not be smooth.
+    pub fn roughly(&self, world: &World, hit: &Hit<'_>, bsdf: &Bsdf, segment: u32) -> Option<Rgb> {
+        let at = self.place(hit.point, bsdf.normal, segment);
+        let with_error = self.near(&at).map(|record| (record.error(&at), record));
+        let (error, record) = with_error.min_by(|a, b| a.0.total_cmp(&b.0))?;
+        (error < self.error && self.sees(world, record, &at)).then(|| record.told(&at))
+    }
+
     fn place(&self, point: DVec3, normal: DVec3, segment: u32) -> Place {
         Place { point, normal, segment: if self.has_end { segment } else { 0 } }
     }

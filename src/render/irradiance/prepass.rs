@@ -47,8 +47,11 @@ const SQUARE: u32 = 4;
 /// Pixels that are looked at together: what bounds the memory of those that lack a record.
 const BAND: usize = 1 << 15;
 
-/// Rays of a record for each sample of a pixel. So all records take no more rays than as many pixels have samples.
+/// Rays of a record for each sample of a pixel. So all records take hardly more rays than as many pixels have samples.
 const RAYS: u32 = 16;
+
+/// The same of those of the first turn: they have no others to ask, and all that come later ask them.
+const FIRST_RAYS: u32 = 64;
 
 /// Records in pictures of few pixels.
 const FEW: usize = 1 << 10;
@@ -70,7 +73,7 @@ pub fn fill(records: &mut Records, prepass: Prepass<'_>) -> Option<()> {
                 let done = turn * pixels.len() + i * BAND + done;
                 prepass.watch.progress.tiles(done, STEPS.len() * pixels.len());
             };
-            prepass.cover(records, band, step * SQUARE, &told)?;
+            prepass.cover(records, band, turn, &told)?;
         }
     }
     Some(())
@@ -83,9 +86,10 @@ impl<'a> Prepass<'a> {
         &self,
         records: &mut Records,
         pixels: &[[u32; 2]],
-        square: u32,
+        turn: usize,
         told: &dyn Fn(usize),
     ) -> Option<()> {
+        let square = STEPS[turn] * SQUARE;
         let [width, height] = self.settings.size;
         let most = (width as usize * height as usize / RAYS as usize).max(FEW);
         let mut lacks: Vec<Lack<'_>> =
@@ -96,7 +100,8 @@ impl<'a> Prepass<'a> {
             let mut squares = HashSet::new();
             let (first, others): (Vec<_>, Vec<_>) =
                 lacks.into_iter().partition(|lack| squares.insert(lack.pixel.map(|n| n / square)));
-            let made: Vec<Option<Record>> = first.par_iter().map(|lack| self.record(records, lack)).collect();
+            let made: Vec<Option<Record>> =
+                first.par_iter().map(|lack| self.record(records, lack, turn)).collect();
             made.into_iter().flatten().for_each(|record| records.insert(self.world, record));
             let lacking = |lack: &Lack<'_>| !records.is_enough(self.world, &records.place_of(&lack.matt));
             lacks = others.into_par_iter().filter(lacking).collect();
@@ -120,12 +125,12 @@ impl<'a> Prepass<'a> {
     /// The light gathered at what a pixel shows. The bands of cells are seen by as many rays as chance needs for the slope not to be
     /// noise: the difference of two cells has the noise of each, however narrow they are. None where a record would tell nothing, or the
     /// work is called off.
-    fn record(&self, records: &Records, lack: &Lack<'_>) -> Option<Record> {
+    fn record(&self, records: &Records, lack: &Lack<'_>, turn: usize) -> Option<Record> {
         let matt = &lack.matt;
-        let rays = RAYS.saturating_mul(self.settings.samples);
+        let rays = if turn == 0 { FIRST_RAYS } else { RAYS }.saturating_mul(self.settings.samples);
         let hemisphere = Hemisphere::of(2 * rays.isqrt());
         let each = (rays / hemisphere.cells()).max(1).next_power_of_two();
-        let seen = |cell| self.watch.go_on().map(|()| self.seen(lack, hemisphere, cell, each));
+        let seen = |cell| self.watch.go_on().map(|()| self.seen(records, lack, (hemisphere, cell), each));
         let seen: Vec<Seen> = (0..hemisphere.cells()).map(seen).collect::<Option<_>>()?;
         let place = records.place_of(matt);
         let gathered = hemisphere.gathered(&seen, frame(place.normal));
@@ -133,17 +138,21 @@ impl<'a> Prepass<'a> {
     }
 
     /// What so many rays through a cell see.
-    fn seen(&self, lack: &Lack<'_>, hemisphere: Hemisphere, cell: u32, rays: u32) -> Seen {
+    fn seen(
+        &self,
+        records: &Records,
+        lack: &Lack<'_>,
+        (hemisphere, cell): (Hemisphere, u32),
+        rays: u32,
+    ) -> Seen {
         let [x, y] = lack.pixel;
         let (mut radiance, mut nearness, mut nearest) = (Rgb::ZERO, 0.0, f64::INFINITY);
         for ray in cell * rays..(cell + 1) * rays {
             let mut sampler = Sampler::new(self.settings.seed, x, y | ROWS[1], ray);
             let about = hemisphere.direction(cell, sampler.next_2d());
             let direction = to_frame(lack.matt.bsdf.normal, about);
-            let Ok((found, distance)) = self.path.gather(self.world, &lack.matt, direction, &mut sampler)
-            else {
-                continue;
-            };
+            let gathered = self.path.gather(self.world, &lack.matt, direction, records, &mut sampler);
+            let Ok((found, distance)) = gathered else { continue };
             radiance += found;
             nearness += 1.0 / distance;
             nearest = nearest.min(distance);

@@ -2,6 +2,7 @@
 //! surfaces along a direction.
 
 use super::{Last, Path, Stage, Walk};
+use crate::render::irradiance::Records;
 use crate::render::medium::Inside;
 use crate::render::sampler::Sampler;
 use crate::scene::Rgb;
@@ -54,12 +55,14 @@ impl Path {
     }
 
     /// Radiance that arrives at a matt surface along a direction chosen by the cosine, as far as it left another surface that
-    /// spreads light: what came straight from a lamp, or by mirrors and glass alone, is left out. Also how far the way is to what is met first.
+    /// spreads light: what came straight from a lamp, or by mirrors and glass alone, is left out. What records tell of what is met is taken from them. Also how far
+    /// the way is to what is met first.
     pub fn gather(
         &self,
         world: &World,
         at: &Matt<'_>,
         wi: DVec3,
+        records: &Records,
         sampler: &mut Sampler,
     ) -> Sampled<(Rgb, f64)> {
         let (point, normal) = (at.hit.point, at.bsdf.normal);
@@ -75,6 +78,7 @@ impl Path {
             last: Some(Last { point, normal, density: cosine / PI }),
             seen: false,
             stage: Stage::Gathered,
+            records: Some(records),
             ..Walk::from_camera(at.hit.spawn(wi, RayKind::Indirect), sampler)
         };
         self.trace(world, &mut walk)?;
