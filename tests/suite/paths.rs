@@ -276,3 +276,45 @@ fn a_white_rough_metal_under_a_white_sky_is_white_at_every_pixel() {
         assert!((film.mean().x - 1.0).abs() < 0.006, "{tracer:?}, {roughness}: {}", film.mean().x);
     }
 }
+
+fn rough_glass(roughness: f64, ior: f64) -> Arc<Material> {
+    layered(0.0, |l| {
+        (l.transmit, l.ior) = (Texture::number(1.0), Texture::number(ior));
+        (l.roughness, l.fresnel) = (Texture::number(roughness), Fresnel::Exact);
+    })
+}
+
+#[test]
+fn rough_glass_under_a_white_sky_is_white_at_every_pixel_from_both_sides() {
+    let layers = Kept::NONE.with(Layer::Variance);
+    let tracers = [TracerKind::Path, TracerKind::Whitted, TracerKind::MonteCarlo];
+    for (roughness, ior) in [(0.1, 1.5), (0.3, 1.33), (0.5, 1.5), (0.5, 2.4), (1.0, 1.5)] {
+        let boundary = world(vec![object(plane(Y, 0.0), &rough_glass(roughness, ior)), sky(1.0)]);
+        for (tracer, side) in tracers.into_iter().flat_map(|tracer| [(tracer, 1.0), (tracer, -1.0)]) {
+            let eye = camera(DVec3::new(0.0, side, 1.0), DVec3::ZERO, 70.0);
+            let settings = ResolvedSettings { tracer, layers, samples: 256, ..settings([8, 8]) };
+            let film = picture(&boundary, &eye, &settings);
+            let of = format!("{tracer:?}, roughness {roughness}, ior {ior}, side {side}");
+            for (pixel, features) in film.pixels.iter().zip(&film.features) {
+                let (off, sigma) = ((pixel.x - 1.0).abs(), features.variance.x.sqrt());
+                assert!(off <= 3.5 * sigma + 0.02, "{of}: {} with {sigma}", pixel.x);
+            }
+            assert!((film.mean().x - 1.0).abs() < 0.015, "{of}: {}", film.mean().x);
+        }
+    }
+}
+
+#[test]
+fn a_ball_of_rough_glass_in_a_white_room_is_not_seen() {
+    let ball = world(vec![object(sphere(DVec3::ZERO, 1.0), &rough_glass(0.5, 1.5)), sky(1.0)]);
+    let film = picture(
+        &ball,
+        &camera(4.0 * DVec3::Z, DVec3::ZERO, 20.0),
+        &ResolvedSettings {
+            tracer: TracerKind::Path,
+            ..ResolvedSettings { depth: u32::MAX, samples: 1024, ..settings([8, 8]) }
+        },
+    );
+    // Each bounce within it adds its own 0.004.
+    assert!((film.mean().x - 1.0).abs() < 0.02, "{}", film.mean().x);
+}

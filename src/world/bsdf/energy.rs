@@ -5,7 +5,10 @@
 //! (1 − E(μo))(1 − E(μi)) / π(1 − Ē): the same both ways, and together with the first bounce it is 1 from everywhere. Facets that reflect a
 //! share F̄ on average take their part at every further bounce, by F̄²Ē / (1 − F̄(1 − Ē)).
 
+mod glass;
+
 use crate::scene::Rgb;
+pub use glass::Glass;
 use std::f64::consts::{LN_2, PI};
 
 /// Columns of the table: μ = tα / (1 + α − t), t = (i/23)². What is lost is largest about μ = α and looks alike there for all small α.

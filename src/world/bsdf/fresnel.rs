@@ -70,12 +70,17 @@ pub fn mean_of_schlick(r0: Rgb) -> Rgb {
     r0 + (Rgb::ONE - r0) / 21.0
 }
 
-/// The mean of [`dielectric_of`] over all directions by their cosines, within 0.01: Kulla & Conty's fit (2017).
+/// The mean of [`dielectric`] over all directions by their cosines, from the rarer side, within 0.01: Kulla & Conty's fit (2017).
+pub fn mean_of_dielectric(eta: f64) -> f64 {
+    (eta - 1.0) / (4.085_67 + 1.000_71 * eta)
+}
+
+/// The same of [`dielectric_of`].
 pub fn mean_of_dielectric_of(r0: Rgb) -> Rgb {
     let channel = |r0: f64| {
         let root = r0.clamp(0.0, 1.0).sqrt();
         let eta = (1.0 + root) / (1.0 - root).max(f64::MIN_POSITIVE);
-        if eta < MOST_ETA { (eta - 1.0) / (4.085_67 + 1.000_71 * eta) } else { r0 }
+        if eta < MOST_ETA { mean_of_dielectric(eta) } else { r0 }
     };
     Rgb::new(channel(r0.x), channel(r0.y), channel(r0.z))
 }

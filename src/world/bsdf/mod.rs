@@ -11,10 +11,11 @@ mod normal;
 mod scatter;
 
 use super::hit::Hit;
+use super::light::{cosine_hemisphere, to_frame};
 use super::texture::{self, Sampled, TexturePoint};
 use super::{Ray, World};
 use crate::scene::{Fresnel, Lobe, Material, Rgb};
-use energy::Lost;
+use energy::{Glass, Lost};
 use fresnel::{reflect, refract};
 use glam::{DVec2, DVec3};
 use lobes::Ggx;
@@ -222,14 +223,28 @@ impl Bsdf {
         }
         let half = (self.wo + wi).normalize_or(self.normal);
         let first = self.mirror_share(self.wo.dot(half)) * self.ggx().lobe(self.wo, wi);
-        let further = self.facets_mean().map_or(Rgb::ZERO, |mean| {
-            Lost::by(self.roughness).lobe(mean, self.wo.dot(self.normal), wi.dot(self.normal))
-        });
+        let (cos_o, cos_i) = (self.wo.dot(self.normal), wi.dot(self.normal));
+        let further = match self.rough_glass() {
+            Some(glass) => glass.back(cos_o, cos_i),
+            None => {
+                self.facets_mean().map_or(Rgb::ZERO, |mean| Lost::by(self.roughness).lobe(mean, cos_o, cos_i))
+            }
+        };
         (first + further) * lit
     }
 
-    /// The share that facets of an opaque mirror reflect on average over all directions. None where light is let through: what
-    /// bounces between facets of glass partly goes in, and is lost here.
+    /// What bounces several times between facets that let light through; none where there are none. Without Fresnel's equations or Schlick's
+    /// approximation of them it is lost.
+    fn rough_glass(&self) -> Option<Glass> {
+        match self.mirror {
+            Mirror::Boundary(silver, Fresnel::Exact | Fresnel::Schlick) if self.is_frosted() => {
+                Some(Glass::new(self.roughness, self.eta(), silver))
+            }
+            _ => None,
+        }
+    }
+
+    /// The share that facets of an opaque mirror reflect on average over all directions. None where light is let through.
     fn facets_mean(&self) -> Option<Rgb> {
         match self.mirror {
             Mirror::None | Mirror::Boundary(..) => None,
@@ -244,9 +259,13 @@ impl Bsdf {
         if !self.is_glossy() {
             return Rgb::ZERO;
         }
+        let cosine = self.wo.dot(self.normal);
+        if let Some(glass) = self.rough_glass() {
+            return glass.sent_back(cosine);
+        }
         self.facets_mean().map_or(Rgb::ZERO, |mean| {
             let lost = Lost::by(self.roughness);
-            lost.share(mean) * lost.at(self.wo.dot(self.normal))
+            lost.share(mean) * lost.at(cosine)
         })
     }
 
@@ -270,13 +289,21 @@ impl Bsdf {
         (weight != Rgb::ZERO).then_some(Scattered { direction, weight })
     }
 
-    /// The direction beyond the surface and the share let through. None where nothing is, or all is reflected.
+    /// The direction beyond the surface and the share let through; a rough boundary's is chosen by u, and what bounces several times between
+    /// its facets is taken to come from there too. None where nothing is let through, or all is reflected.
     pub fn transmitted(&self, u: DVec2) -> Option<Scattered> {
         if self.transmit == Rgb::ZERO {
             return None;
         }
         let (facet, rough) = self.facet(u);
-        let bent = refract(self.wo, facet, self.eta())?;
+        let further =
+            self.rough_glass().map_or(Rgb::ZERO, |glass| glass.let_through(self.wo.dot(self.normal)));
+        let Some(bent) = refract(self.wo, facet, self.eta()) else {
+            // What bounces several times goes through all the same.
+            let direction = normal::onto_side(to_frame(-self.normal, cosine_hemisphere(u)), -self.geometric);
+            let weight = self.transmit * further;
+            return (weight != Rgb::ZERO).then_some(Scattered { direction, weight });
+        };
         let share = Rgb::ONE - self.mirror_share(self.wo.dot(facet).clamp(0.0, 1.0));
         let direction = normal::onto_side(bent, -self.geometric);
         let carried = if rough {
@@ -284,7 +311,7 @@ impl Bsdf {
         } else {
             1.0
         };
-        let weight = self.transmit * share * carried;
+        let weight = self.transmit * (share * carried + further);
         (weight != Rgb::ZERO).then_some(Scattered { direction, weight })
     }
 
