@@ -1,8 +1,6 @@
 //! Rays through aggregates and their placements.
 
 use super::aggregate::{Aggregate, Group, Item};
-use super::shape::triangle::Sheared;
-use super::shape::triangle::leaf::Asked;
 use super::shape::{Csg, LocalRay, Meet, Shape};
 use super::tree::Tree;
 use super::{PrimitiveId, RayKind, World};
@@ -38,8 +36,17 @@ struct Local {
     ray: LocalRay,
     /// How many of the ray's distances make one of the world's: a power of two.
     per_world: f64,
+    /// The same the other way round.
+    world_per: f64,
     /// The placement's number.
     instance: u64,
+}
+
+impl Local {
+    #[inline(always)]
+    fn new(ray: LocalRay, per_world: f64, instance: u64) -> Local {
+        Local { ray, per_world, world_per: 1.0 / per_world, instance }
+    }
 }
 
 impl<'w> Query<'w> {
@@ -54,7 +61,7 @@ impl<'w> Query<'w> {
         any: bool,
     ) -> Option<Candidate> {
         let mut query = Query { world, kind, any, limit, found: None };
-        query.visit(&world.aggregates[0], &Local { ray: *ray, per_world, instance: 0 });
+        query.visit(&world.aggregates[0], &Local::new(*ray, per_world, 0));
         query.found
     }
 
@@ -62,15 +69,12 @@ impl<'w> Query<'w> {
         match aggregate {
             Aggregate::Group(group) => self.visit_group(group, local),
             Aggregate::Mesh(mesh) => {
-                let ray = Sheared::new(&local.ray);
-                self.each(&mesh.shape.tree, local, |query, range| {
-                    let asked = Asked { ray: &ray, limit: query.limit * local.per_world, any: query.any };
-                    if let Some((position, meet)) = mesh.shape.meet_nearest(range, &asked) {
-                        let part = mesh.shape.triangle_at(position);
-                        let id = PrimitiveId { instance: local.instance, shape: 0, part };
-                        query.offer(id, 0, meet, local);
-                    }
-                });
+                let met = mesh.shape.meet_nearest(&local.ray, self.limit * local.per_world, self.any);
+                if let Some((position, meet)) = met {
+                    let part = mesh.shape.triangle_at(position);
+                    let id = PrimitiveId { instance: local.instance, shape: 0, part };
+                    self.offer(id, 0, meet, local);
+                }
             }
         }
     }
@@ -116,12 +120,7 @@ impl<'w> Query<'w> {
             Item::Shape(shape, None) => self.meet(shape, group, position, local),
             Item::Shape(shape, Some(transform)) => {
                 let Some((ray, factor)) = local.ray.into_local(transform) else { return };
-                self.meet(
-                    shape,
-                    group,
-                    position,
-                    &Local { ray, per_world: local.per_world * factor, ..*local },
-                );
+                self.meet(shape, group, position, &Local::new(ray, local.per_world * factor, local.instance));
             }
             Item::Instance(instance) => {
                 let (ray, factor) = match &instance.transform {
@@ -131,11 +130,8 @@ impl<'w> Query<'w> {
                         Some(inside) => inside,
                     },
                 };
-                let inside = Local {
-                    ray,
-                    per_world: local.per_world * factor,
-                    instance: local.instance.saturating_add(instance.first),
-                };
+                let number = local.instance.saturating_add(instance.first);
+                let inside = Local::new(ray, local.per_world * factor, number);
                 self.visit(&self.world.aggregates[instance.aggregate as usize], &inside);
             }
         }
@@ -156,7 +152,7 @@ impl<'w> Query<'w> {
 
     #[inline]
     fn offer(&mut self, id: PrimitiveId, position: u32, meet: Meet, local: &Local) {
-        let t = meet.t / local.per_world;
+        let t = meet.t * local.world_per;
         let better = self.found.is_none_or(|best| t < best.t || (t == best.t && id < best.id));
         if better && t <= self.limit {
             self.limit = t;

@@ -4,6 +4,7 @@ use crate::geometry::mesh::Mesh;
 use crate::math::Aabb;
 use crate::scene::Accelerator;
 use crate::world::shape::LocalRay;
+use crate::world::shape::triangle::search::{Ordered, Search};
 use crate::world::shape::triangle::{Sheared, cut::cut, leaf};
 use crate::world::tree::Tree;
 use crate::world::{bvh, kdtree};
@@ -118,42 +119,46 @@ impl<'m> Subject<'m> {
     /// The nearest meeting, or any: distance and triangle; of equally near ones the first triangle. None too for a line without direction.
     #[inline]
     pub fn meet(&self, line: &Line, any: bool) -> Option<(f64, u32)> {
-        let mut asked = Asked::new(self, line, any)?;
-        let LocalRay { origin, direction } = asked.ray;
-        let limit = asked.limit;
+        let Local { ray, per_line, limit } = Local::new(line)?;
+        let mut search = Search::new(self.ordered(), &ray, limit, any);
         if any {
-            self.tree.traverse_any(origin, direction, limit, |range| asked.goes_on(range));
+            self.tree.traverse_any(ray.origin, ray.direction, limit, |range| search.goes_on(range));
         } else {
-            self.tree.traverse(origin, direction, limit, |range, _| asked.limit_after(range));
+            self.tree.traverse(ray.origin, ray.direction, limit, |range, _| search.limit_after(range));
         }
-        asked.found()
+        search.found().map(|(place, meet)| (meet.t / per_line, self.tree.order()[place]))
+    }
+
+    fn ordered(&self) -> Ordered<'_> {
+        Ordered { corners: &self.corners, vertices: &self.mesh.positions, order: self.tree.order() }
     }
 
     /// How far a line goes to one triangle; none where it misses that.
     pub fn distance_to(&self, line: &Line, triangle: u32) -> Option<f64> {
-        let asked = Asked::new(self, line, false)?;
+        let Local { ray, per_line, limit } = Local::new(line)?;
         let corners = self.mesh.triangles[triangle as usize].map(|p| self.mesh.positions[p as usize]);
-        let meet = asked.sheared.meet(corners.each_ref(), asked.limit)?;
-        Some(meet.t / asked.per_line)
+        let meet = Sheared::new(&ray).meet(corners.each_ref(), limit)?;
+        Some(meet.t / per_line)
     }
 
     /// What [`Subject::meet`] costs.
     pub fn work(&self, line: &Line, any: bool) -> Work {
-        let Some(mut asked) = Asked::new(self, line, any) else { return Work::default() };
-        let LocalRay { origin, direction } = asked.ray;
-        let (limit, mut nodes, mut tests) = (asked.limit, 0, 0);
+        let Some(Local { ray, limit, .. }) = Local::new(line) else { return Work::default() };
+        let LocalRay { origin, direction } = ray;
+        let mut search = Search::new(self.ordered(), &ray, limit, any);
+        let (mut nodes, mut tests) = (0, 0);
         let mut count = |range: &Range<usize>| tests += range.len() as u64;
         match &self.tree {
             Tree::Bvh(tree) if any => {
                 nodes = tree.traverse_any_counting(origin, direction, limit, |range| {
                     count(&range);
-                    asked.goes_on(range)
+                    search.goes_on(range)
                 });
             }
             Tree::Bvh(tree) => {
                 nodes = tree.traverse_counting(origin, direction, limit, |range, _| {
                     count(&range);
-                    asked.limit_after(range)
+                    search.limit_after(range)
                 });
             }
             Tree::KdTree(tree) => tree.traverse_counting(
@@ -163,7 +168,7 @@ impl<'m> Subject<'m> {
                 || nodes += 1,
                 |range, _| {
                     count(&range);
-                    asked.limit_after(range)
+                    search.limit_after(range)
                 },
             ),
         }
@@ -171,54 +176,19 @@ impl<'m> Subject<'m> {
     }
 }
 
-/// A ray under way.
-struct Asked<'a, 'm> {
-    subject: &'a Subject<'m>,
+/// A line as trees are asked.
+struct Local {
     ray: LocalRay,
-    sheared: Sheared,
+    /// How many of the ray's distances make one of the line's.
     per_line: f64,
+    /// Largest distance that counts, in the ray's.
     limit: f64,
-    any: bool,
-    best: Option<(f64, u32)>,
 }
 
-impl<'a, 'm> Asked<'a, 'm> {
+impl Local {
     #[inline]
-    fn new(subject: &'a Subject<'m>, line: &Line, any: bool) -> Option<Asked<'a, 'm>> {
+    fn new(line: &Line) -> Option<Local> {
         let (ray, per_line) = LocalRay::new(line.origin, line.direction)?;
-        let limit = line.t_max.next_down() * per_line;
-        Some(Asked { subject, sheared: Sheared::new(&ray), ray, per_line, limit, any, best: None })
-    }
-
-    #[inline(always)]
-    fn leaf(&mut self, range: Range<usize>) {
-        let Subject { mesh, corners, tree } = self.subject;
-        let asked = leaf::Asked { ray: &self.sheared, limit: self.limit, any: self.any };
-        if let Some((place, meet)) = corners.nearest(&mesh.positions, range, &asked, |i| tree.order()[i]) {
-            let triangle = tree.order()[place];
-            if self.best.is_none_or(|(t, first)| meet.t < t || (meet.t == t && triangle < first)) {
-                self.best = Some((meet.t, triangle));
-                self.limit = meet.t;
-            }
-        }
-    }
-
-    /// As a traversal without order asks.
-    #[inline(always)]
-    fn goes_on(&mut self, range: Range<usize>) -> bool {
-        self.leaf(range);
-        self.best.is_none()
-    }
-
-    /// As a traversal in order asks.
-    #[inline(always)]
-    fn limit_after(&mut self, range: Range<usize>) -> f64 {
-        self.leaf(range);
-        if self.any && self.best.is_some() { -1.0 } else { self.limit }
-    }
-
-    #[inline]
-    fn found(&self) -> Option<(f64, u32)> {
-        self.best.map(|(t, triangle)| (t / self.per_line, triangle))
+        Some(Local { ray, per_line, limit: line.t_max.next_down() * per_line })
     }
 }

@@ -1,6 +1,7 @@
 //! Meshes as rays meet them: shared vertices, triangles in the order of their tree.
 
-use super::triangle::leaf::{self, Asked};
+use super::triangle::leaf;
+use super::triangle::search::{Ordered, Search};
 use super::triangle::{Corners, Sheared, bounds_of, cut, surface_of};
 use super::{LocalRay, Meet, Surface};
 use crate::geometry::mesh::Mesh;
@@ -8,7 +9,6 @@ use crate::geometry::skin::Influences;
 use crate::scene::{Accelerator, Armature};
 use crate::world::tree::Tree;
 use glam::DVec3;
-use std::ops::Range;
 use std::sync::Arc;
 
 /// A mesh and its tree.
@@ -90,10 +90,17 @@ impl MeshShape {
         ray.meet(self.corners_at(position).each_ref(), limit)
     }
 
-    /// The nearest meeting of a ray with triangles of the tree's order, or any, and its position; of equally near ones the first triangle.
-    #[inline]
-    pub fn meet_nearest(&self, range: Range<usize>, asked: &Asked) -> Option<(usize, Meet)> {
-        self.corners.nearest(&self.mesh.positions, range, asked, |i| self.triangle_at(i))
+    /// The nearest meeting at a distance in (0, limit], or any, and its position in the tree's order; of equally near ones the first triangle.
+    pub fn meet_nearest(&self, ray: &LocalRay, limit: f64, any: bool) -> Option<(usize, Meet)> {
+        let vertices = &*self.mesh.positions;
+        let among = Ordered { corners: &self.corners, vertices, order: self.tree.order() };
+        let mut search = Search::new(among, ray, limit, any);
+        if any {
+            self.tree.traverse_any(ray.origin, ray.direction, limit, |range| search.goes_on(range));
+        } else {
+            self.tree.traverse(ray.origin, ray.direction, limit, |range, _| search.limit_after(range));
+        }
+        search.found()
     }
 
     #[inline(always)]

@@ -7,6 +7,7 @@
 
 pub mod cut;
 pub mod leaf;
+pub mod search;
 
 use super::{LocalRay, Meet, Surface};
 use crate::math::Aabb;
@@ -22,6 +23,8 @@ pub struct Sheared {
     direction: DVec3,
     /// The ray's largest axis last, which is z after the shear; x and y are the two after it.
     axes: [usize; 3],
+    /// The origin along them.
+    start: [f64; 3],
     /// x and y of the direction over its z, and 1 over its z.
     shear: [f64; 3],
 }
@@ -36,7 +39,7 @@ const AXES: [[usize; 3]; 3] = [[1, 2, 0], [2, 0, 1], [0, 1, 2]];
 impl Sheared {
     /// Prepares a ray.
     pub fn new(ray: &LocalRay) -> Sheared {
-        let (d, size) = (ray.direction.to_array(), ray.direction.abs());
+        let (o, d, size) = (ray.origin.to_array(), ray.direction.to_array(), ray.direction.abs());
         // Without branches: which axis is the largest cannot be foreseen.
         let beyond_x = 2 - usize::from(size.y > size.z);
         let is_x = (size.x > size.y) & (size.x > size.z);
@@ -44,16 +47,17 @@ impl Sheared {
         let axes = AXES[along];
         let inverse = 1.0 / d[along];
         let shear = [d[axes[0]] * inverse, d[axes[1]] * inverse, inverse];
-        Sheared { origin: ray.origin, direction: ray.direction, axes, shear }
+        let start = axes.map(|axis| o[axis]);
+        Sheared { origin: ray.origin, direction: ray.direction, axes, start, shear }
     }
 
     /// A corner relative to the ray: sheared x and y, and z unsheared.
     #[inline(always)]
     fn corner(&self, p: &DVec3) -> [f64; 3] {
-        let (p, o): (&[f64; 3], &[f64; 3]) = (p.as_ref(), self.origin.as_ref());
+        let (p, o): (&[f64; 3], _) = (p.as_ref(), &self.start);
         let [x, y, z] = self.axes;
-        let z = p[z] - o[z];
-        [(p[x] - o[x]) - self.shear[0] * z, (p[y] - o[y]) - self.shear[1] * z, z]
+        let z = p[z] - o[2];
+        [(p[x] - o[0]) - self.shear[0] * z, (p[y] - o[1]) - self.shear[1] * z, z]
     }
 
     /// All three, one by one: mapping an array costs as much as the test.

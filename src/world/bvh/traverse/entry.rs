@@ -55,10 +55,10 @@ impl Entry {
         point.is_finite().then_some(Entry { point, margin, start, scale })
     }
 
-    /// A float at or beyond the distance t in the tree's frame.
+    /// A float at or beyond the distance t in the tree's frame: [`SLACK`] hides the rounding of the cast too, where a float has all its digits.
     #[inline(always)]
     pub fn limit(&self, t: f64) -> f32 {
-        round_up(((t - self.start) * SLACK + t * MARGIN) * self.scale)
+        (((t - self.start) * SLACK + t * MARGIN) * self.scale) as f32 + f32::MIN_POSITIVE
     }
 }
 

@@ -10,7 +10,7 @@ use std::ops::Range;
 /// Corners of triangles.
 #[derive(Clone, Debug)]
 pub enum Corners {
-    /// Side by side, axis by axis, where every coordinate is a f32, with one more that a load of four numbers may reach into.
+    /// Side by side, axis by axis, where every coordinate is a f32, with one more that is read into beyond the last.
     Narrow(Vec<[[f32; 3]; 3]>),
     /// By their places among the vertices.
     Shared(Vec<[u32; 3]>),

@@ -61,13 +61,16 @@ mod x86 {
         number: impl Fn(usize) -> u32,
     ) -> Option<(usize, Meet)> {
         let ray = asked.ray;
-        let origin = ray.axes.map(|axis| _mm256_set1_pd(ray.origin[axis]));
+        let origin = ray.start.map(|x| _mm256_set1_pd(x));
+        // Below 8, as it is anyway: so that no row needs to be looked for within what was found for all.
+        let rows = ray.axes.map(|axis| (3 * axis) & 7);
         let all = all.as_flattened().as_flattened();
         nearest_by(range, asked, number, |position, limit| {
-            let nine = &all[9 * position..][..10];
+            let rest = &all[9 * position..];
+            let nine: &[f32; 16] = rest.first_chunk().expect("one more stands after all");
             // The last of four is another row's, or lies after all.
-            let four = |axis: usize| nine[3 * axis..].first_chunk().expect("an axis is 0, 1 or 2");
-            let row = |i: usize| _mm256_sub_pd(widen_4(four(ray.axes[i])), origin[i]);
+            let four = |at: usize| nine[at..at + 4].first_chunk().expect("four of four");
+            let row = |i: usize| _mm256_sub_pd(widen_4(four(rows[i])), origin[i]);
             let corners = || {
                 std::array::from_fn(|i| DVec3::new(nine[i].into(), nine[3 + i].into(), nine[6 + i].into()))
             };
@@ -90,7 +93,7 @@ mod x86 {
             let v = _mm256_castpd_ps(load_3(v.as_ref()));
             _mm256_castps_pd(_mm256_permutevar8x32_ps(v, order))
         };
-        let origin = turned(&ray.origin);
+        let origin = load_3(&ray.start);
         nearest_by(range, asked, number, |position, limit| {
             let places = all[position].map(|i| &vertices[i as usize]);
             let at = |i: usize| _mm256_sub_pd(turned(places[i]), origin);
