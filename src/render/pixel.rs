@@ -46,11 +46,12 @@ impl Pixel {
         report: &mut Report,
         cancel: &AtomicBool,
     ) -> bool {
+        let mut sampler = self.sampler(picture.settings);
         while self.taken < to {
             if cancel.load(Ordering::Relaxed) {
                 return false;
             }
-            self.take(picture, report);
+            self.take(picture, &mut sampler, report);
         }
         true
     }
@@ -63,12 +64,12 @@ impl Pixel {
         report: &mut Report,
         cancel: &AtomicBool,
     ) -> bool {
-        let mut blocks = Blocks::default();
+        let (mut blocks, mut sampler) = (Blocks::default(), self.sampler(picture.settings));
         while self.taken < picture.settings.samples {
             if cancel.load(Ordering::Relaxed) {
                 return false;
             }
-            blocks.add(self.take(picture, report));
+            blocks.add(self.take(picture, &mut sampler, report));
             self.enough = blocks.error(picture.settings.exposure).is_some_and(|error| error <= target);
             if self.enough {
                 break;
@@ -77,14 +78,17 @@ impl Pixel {
         true
     }
 
-    /// Takes the next sample.
-    fn take(&mut self, picture: Picture<'_>, report: &mut Report) -> Rgb {
-        let ResolvedSettings { seed, sampler: kind, samples, .. } = *picture.settings;
+    /// The numbers of the next sample.
+    fn sampler(&self, settings: &ResolvedSettings) -> Sampler {
         let [x, y] = self.place;
-        let mut sampler = Sampler::new(seed, x, y, self.taken).of_kind(kind, samples);
-        let ray = camera_ray(picture, self.place, &mut sampler);
+        Sampler::new(settings.seed, x, y, self.taken).of_kind(settings.sampler, settings.samples)
+    }
+
+    /// Takes the next sample by its numbers, and turns them to the one after it.
+    fn take(&mut self, picture: Picture<'_>, sampler: &mut Sampler, report: &mut Report) -> Rgb {
+        let ray = camera_ray(picture, self.place, sampler);
         let radiance = match ray {
-            Some(ray) => picture.tracer.radiance(picture.world, ray, &mut sampler),
+            Some(ray) => picture.tracer.radiance(picture.world, ray, sampler),
             None => Rgb::ZERO,
         };
         let radiance = match picture.settings.clamp {
@@ -103,6 +107,7 @@ impl Pixel {
             self.undefined = self.undefined.or(sampler.undefined);
         }
         report.rays += sampler.rays;
+        sampler.restart();
         self.taken += 1;
         radiance
     }

@@ -84,6 +84,12 @@ impl Sampler {
         Sampler { kind, samples, ..self }
     }
 
+    /// The next sample of the pixel, with nothing noted.
+    pub fn restart(&mut self) {
+        let sample = self.sample + 1;
+        *self = Sampler { sample, dimension: 0, rays: RayCounts::default(), undefined: None, ..*self };
+    }
+
     /// The next number, in (0, 1).
     pub fn next_1d(&mut self) -> f64 {
         self.next_2d().x

@@ -6,6 +6,7 @@ use super::query::Candidate;
 use super::shape::csg::Solid;
 use super::shape::{LocalRay, Meet, Shape, carry};
 use super::{Hit, PrimitiveId, Provenance, World};
+use crate::math::Affine;
 use glam::DVec3;
 
 /// A step from a group into a placement.
@@ -71,6 +72,7 @@ impl World {
     }
 
     /// The hit that a candidate is. `ray` is the world's.
+    #[inline]
     pub(super) fn finish(&self, ray: &LocalRay, t: f64, candidate: &Candidate) -> Option<Hit<'_>> {
         let path = self.path(candidate.id.instance);
         let (shape, own_transform) = match path.aggregate {
@@ -80,13 +82,29 @@ impl World {
                 Item::Instance(_) => return None,
             },
         };
+        // Most things are not placed.
+        if path.steps.is_empty() {
+            return self.carried(ray, t, candidate, (&path, shape), own_transform.into_iter());
+        }
         let placements = path.steps.iter().filter_map(|step| step.instance.transform.as_ref());
-        let transforms = placements.chain(own_transform);
+        self.carried(ray, t, candidate, (&path, shape), placements.chain(own_transform))
+    }
+
+    /// The hit on what stands under transforms, outermost first.
+    #[inline]
+    fn carried<'w, 't>(
+        &'w self,
+        ray: &LocalRay,
+        t: f64,
+        candidate: &Candidate,
+        (path, shape): (&Path<'w>, Option<&'w Shape>),
+        transforms: impl Iterator<Item = &'t Affine> + Clone,
+    ) -> Option<Hit<'w>> {
         let mut local = *ray;
         for transform in transforms.clone() {
             local = local.into_local(transform)?.0;
         }
-        let material = &self.materials[self.material_on(&path, shape, candidate) as usize];
+        let material = &self.materials[self.material_on(path, shape, candidate) as usize];
         let (mut own_point, mut worn) = (None, None);
         let mut surface = match (shape, path.aggregate) {
             (Some(Shape::Csg(csg)), _) => {

@@ -14,7 +14,7 @@ use super::hit::Hit;
 use super::light::{cosine_hemisphere, to_frame};
 use super::texture::{self, Sampled, TexturePoint};
 use super::{Ray, World};
-use crate::scene::{Fresnel, Lobe, Material, Rgb};
+use crate::scene::{Fresnel, Lobe, Material, Rgb, Texture};
 use energy::{Glass, Lost};
 use fresnel::{reflect, refract};
 use glam::{DVec2, DVec3};
@@ -88,8 +88,11 @@ impl Bsdf {
         let outside = wo.dot(hit.geometric_normal) >= 0.0;
         let side = if outside { 1.0 } else { -1.0 };
         let geometric = hit.geometric_normal * side;
-        let at = TexturePoint::from(hit);
-        let diffuse = texture::colour(&material.diffuse, &at)?;
+        // What a pattern may ask is put together for patterns alone.
+        let diffuse = match &material.diffuse {
+            Texture::Constant(colour) => *colour,
+            pattern => texture::colour(pattern, &TexturePoint::from(hit))?,
+        };
         let normal = normal::facing(hit.normal * side, geometric, wo);
         let matt = Bsdf { wo, geometric, normal, outside, diffuse, ..Bsdf::BARE };
         // Written where it is given back: a copy of so much just written waits for the writes.

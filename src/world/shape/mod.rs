@@ -43,7 +43,7 @@ use glam::{DVec2, DVec3};
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 
-/// A ray in some space, its direction scaled by a power of two to a largest component in [1, 2).
+/// A ray in some space, its direction scaled by a power of two where its largest component is not in [½, 2), as those of unit vectors are.
 #[derive(Clone, Copy, Debug)]
 pub struct LocalRay {
     /// Where it starts.
@@ -58,9 +58,19 @@ impl LocalRay {
     pub fn new(origin: DVec3, direction: DVec3) -> Option<(LocalRay, f64)> {
         let size = direction.abs();
         let larger = if size.x > size.y { size.x } else { size.y };
-        let e = exponent(if size.z > larger { size.z } else { larger });
+        let largest = if size.z > larger { size.z } else { larger };
+        if !(0.5..2.0).contains(&largest) {
+            return LocalRay::scaled(origin, direction, exponent(largest));
+        }
+        // What is no number may hide behind what is.
+        let is_finite = !direction.element_sum().is_nan();
+        is_finite.then_some((LocalRay { origin, direction }, 1.0))
+    }
+
+    /// By 2 to the power of minus e.
+    fn scaled(origin: DVec3, direction: DVec3, e: i32) -> Option<(LocalRay, f64)> {
         let scaled = direction * power_of_two(-e);
-        // What is infinite is the largest; what is no number may hide behind what is.
+        // What is infinite is the largest.
         let is_finite = (-1022..=1023).contains(&e) && !scaled.element_sum().is_nan();
         is_finite.then_some((LocalRay { origin, direction: scaled }, power_of_two(e)))
     }
