@@ -107,6 +107,9 @@ pub struct Kernels {
     /// Count the instructions of a call too, in some minutes more, where valgrind is installed
     #[arg(long)]
     pub count: bool,
+    /// Exit 1 where the default's instructions, by those of the variant before all others, are a tenth above this report's
+    #[arg(long, value_name = "DIR", requires = "count", value_hint = ValueHint::DirPath)]
+    pub against: Option<PathBuf>,
 }
 
 /// `ogee bench count`.

@@ -72,7 +72,12 @@ fn kernels(args: &Kernels) -> Ended {
             row.error_unit
         ));
     }
-    Ok(if broken.is_empty() { Exit::Done } else { Exit::Scene })
+    let grown = match &args.against {
+        Some(report) => counts::grown(&rows, &rows_of(&results_in(report)?)?.1),
+        None => Vec::new(),
+    };
+    grown.iter().for_each(tell);
+    Ok(if broken.is_empty() && grown.is_empty() { Exit::Done } else { Exit::Scene })
 }
 
 /// Makes a report's folder for results, and the folders around it.
@@ -88,19 +93,7 @@ fn write(folder: &Path, pages: &[Page]) -> Result<(), Failure> {
 
 /// Renders what the result files of a folder hold: kernels in the order of their components, tracers by scene, or trees by mesh.
 fn report(args: &BenchReport) -> Ended {
-    let results = args.folder.join("results");
-    let cannot = |what: &Path, error: &std::io::Error| {
-        Failure::machine(format!("cannot read {}", what.display()), reason(error))
-    };
-    let entries = std::fs::read_dir(&results).map_err(|error| cannot(&results, &error))?;
-    let mut files: Vec<_> = entries.flatten().map(|entry| entry.path()).collect();
-    files.retain(|path| path.extension().is_some_and(|extension| extension == "jsonl"));
-    files.sort();
-    let mut texts = Vec::new();
-    for file in files {
-        let text = std::fs::read_to_string(&file).map_err(|error| cannot(&file, &error))?;
-        texts.push((file, text));
-    }
+    let texts = results_in(&args.folder)?;
     let mode = match texts.first() {
         Some(_) => rows_of::<serde_json::Value>(&texts[..1])?.0.mode,
         None => String::new(),
@@ -130,6 +123,23 @@ fn beside(report: &Path) -> Vec<Link> {
     let mut links: Vec<Link> = folders.filter_map(link).collect();
     links.sort_by(|a, b| a.1.cmp(&b.1));
     links
+}
+
+/// The result files of a report's folder with their texts, in the order of their names.
+fn results_in(report: &Path) -> Result<Vec<(PathBuf, String)>, Failure> {
+    let results = report.join("results");
+    let cannot = |what: &Path, error: &std::io::Error| {
+        Failure::machine(format!("cannot read {}", what.display()), reason(error))
+    };
+    let entries = std::fs::read_dir(&results).map_err(|error| cannot(&results, &error))?;
+    let mut files: Vec<_> = entries.flatten().map(|entry| entry.path()).collect();
+    files.retain(|path| path.extension().is_some_and(|extension| extension == "jsonl"));
+    files.sort();
+    let text_of = |file: PathBuf| match std::fs::read_to_string(&file) {
+        Ok(text) => Ok((file, text)),
+        Err(error) => Err(cannot(&file, &error)),
+    };
+    files.into_iter().map(text_of).collect()
 }
 
 /// The machine of the last file, and the rows of all.

@@ -42,6 +42,31 @@ pub fn fill(rows: &mut [Row], only: &[String]) -> Result<(), Failure> {
     Ok(())
 }
 
+/// Of what the default may take more than it did: other compilers count some hundredths differently.
+const ALLOWED: f64 = 1.1;
+
+/// A sentence for each case where the default takes more instructions than in rows of another run, both by those of the case's first
+/// variant, so that what all variants share does not tell.
+pub fn grown(rows: &[Row], before: &[Row]) -> Vec<String> {
+    let defaults = rows.iter().filter(|row| row.default);
+    let grown = defaults.filter_map(|row| {
+        let (now, then) = (ratio(rows, row)?, ratio(before, row)?);
+        let more = now > then * ALLOWED;
+        more.then(|| {
+            let Row { component, case, .. } = row;
+            format!("{component}, {case}: {now:.3} of the first variant's instructions; it was {then:.3}")
+        })
+    });
+    grown.collect()
+}
+
+/// Instructions of a case's default over those of its first variant, where both were counted.
+fn ratio(rows: &[Row], of: &Row) -> Option<f64> {
+    let mut case = rows.iter().filter(|row| (&row.component, &row.case) == (&of.component, &of.case));
+    let first = case.clone().min_by_key(|row| row.order)?;
+    Some(case.find(|row| row.default)?.instructions? / first.instructions?)
+}
+
 /// Component, case and variant.
 type Variant = [String; 3];
 
@@ -79,4 +104,33 @@ fn counts_of(component: &str) -> Result<Vec<(Variant, f64)>, Failure> {
 fn total(file: &Path) -> Option<f64> {
     let text = std::fs::read_to_string(file).ok()?;
     text.lines().find_map(|line| line.strip_prefix("totals: ")).and_then(|number| number.trim().parse().ok())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn row(order: usize, default: bool, instructions: Option<f64>) -> Row {
+        let (component, case) = ("roots".into(), "any".into());
+        Row { order, component, case, default, instructions, ..Row::default() }
+    }
+
+    #[test]
+    fn what_takes_more_instructions_than_it_did_is_told_by_its_first_variant() {
+        let run = |first, default| [row(7, true, Some(default)), row(3, false, Some(first))];
+        let before = run(200.0, 100.0);
+        assert!(grown(&run(200.0, 109.0), &before).is_empty());
+        // Both grew alike.
+        assert!(grown(&run(400.0, 200.0), &before).is_empty());
+        let told = grown(&run(200.0, 111.0), &before);
+        assert_eq!(told, ["roots, any: 0.555 of the first variant's instructions; it was 0.500"]);
+    }
+
+    #[test]
+    fn what_was_not_counted_in_either_run_is_not_judged() {
+        let counted = [row(0, false, Some(1.0)), row(1, true, Some(9.0))];
+        let bare = [row(0, false, None), row(1, true, None)];
+        assert!(grown(&counted, &bare).is_empty() && grown(&bare, &counted).is_empty());
+        assert!(grown(&counted, &[]).is_empty());
+    }
 }
