@@ -1,4 +1,7 @@
 //! The one traversal: nearest boxes first, for closest hits and for any hit.
+//!
+//! Rays go one by one. Camera rays in packets would save a part of the walk alone, which is a fifth of the time of a picture without second
+//! rays of 82 thousand triangles (the tests of triangles are a seventh), and less of every other picture.
 
 mod counting;
 mod entry;

@@ -1,4 +1,7 @@
 //! Triangles in the order of a tree, and the nearest of those of a leaf. Knows no tree.
+//!
+//! One after another, its three corners side by side. Four triangles at once, in leaves that begin at every fourth place, were as fast or up
+//! to a seventh slower: of the four 2.4 were there, and two thirds more memory was read.
 
 mod wide;
 
