@@ -120,13 +120,8 @@ impl<'m> Subject<'m> {
     #[inline]
     pub fn meet(&self, line: &Line, any: bool) -> Option<(f64, u32)> {
         let Local { ray, per_line, limit } = Local::new(line)?;
-        let mut search = Search::new(self.ordered(), &ray, limit, any);
-        if any {
-            self.tree.traverse_any(ray.origin, ray.direction, limit, |range| search.goes_on(range));
-        } else {
-            self.tree.traverse(ray.origin, ray.direction, limit, |range, _| search.limit_after(range));
-        }
-        search.found().map(|(place, meet)| (meet.t / per_line, self.tree.order()[place]))
+        let met = self.ordered().nearest(&self.tree, &ray, limit, any);
+        met.map(|(place, meet)| (meet.t / per_line, self.tree.order()[place]))
     }
 
     fn ordered(&self) -> Ordered<'_> {

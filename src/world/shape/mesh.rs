@@ -1,7 +1,7 @@
 //! Meshes as rays meet them: shared vertices, triangles in the order of their tree.
 
 use super::triangle::leaf;
-use super::triangle::search::{Ordered, Search};
+use super::triangle::search::Ordered;
 use super::triangle::{Corners, Sheared, bounds_of, cut, surface_of};
 use super::{LocalRay, Meet, Surface};
 use crate::geometry::mesh::Mesh;
@@ -94,13 +94,7 @@ impl MeshShape {
     pub fn meet_nearest(&self, ray: &LocalRay, limit: f64, any: bool) -> Option<(usize, Meet)> {
         let vertices = &*self.mesh.positions;
         let among = Ordered { corners: &self.corners, vertices, order: self.tree.order() };
-        let mut search = Search::new(among, ray, limit, any);
-        if any {
-            self.tree.traverse_any(ray.origin, ray.direction, limit, |range| search.goes_on(range));
-        } else {
-            self.tree.traverse(ray.origin, ray.direction, limit, |range, _| search.limit_after(range));
-        }
-        search.found()
+        among.nearest(&self.tree, ray, limit, any)
     }
 
     #[inline(always)]

@@ -1,8 +1,9 @@
-//! A ray among triangles that stand in the order of a tree: what it has met so far, leaf by leaf. Knows no tree.
+//! A ray among triangles that stand in the order of a tree: what it has met so far, leaf by leaf.
 
 use super::Sheared;
 use super::leaf::{Asked, Corners};
 use crate::world::shape::{LocalRay, Meet};
+use crate::world::tree::Tree;
 use glam::DVec3;
 use std::ops::Range;
 
@@ -15,6 +16,20 @@ pub struct Ordered<'m> {
     pub vertices: &'m [DVec3],
     /// The triangle at each position.
     pub order: &'m [u32],
+}
+
+impl Ordered<'_> {
+    /// The nearest meeting at a distance in (0, limit], or any, and its position in the order of this tree; of equally near ones the first triangle.
+    #[inline]
+    pub fn nearest(self, tree: &Tree, ray: &LocalRay, limit: f64, any: bool) -> Option<(usize, Meet)> {
+        let mut search = Search::new(self, ray, limit, any);
+        if any {
+            tree.traverse_any(ray.origin, ray.direction, limit, |range| search.goes_on(range));
+        } else {
+            tree.traverse(ray.origin, ray.direction, limit, |range, _| search.limit_after(range));
+        }
+        search.found()
+    }
 }
 
 /// A search under way.
@@ -66,7 +81,7 @@ impl<'m> Search<'m> {
 
     /// The position that was met, and where there.
     #[inline]
-    pub fn found(&self) -> Option<(usize, Meet)> {
+    fn found(&self) -> Option<(usize, Meet)> {
         (self.at != NOWHERE)
             .then_some((self.at, Meet { t: self.limit, a: self.a, b: self.b, face: 0, part: 0 }))
     }
