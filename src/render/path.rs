@@ -23,7 +23,7 @@ use super::settings::ResolvedSettings;
 use super::tiles::Watch;
 use crate::scene::Rgb;
 use crate::world::bsdf::{Bounce, Bsdf, Odds};
-use crate::world::light::{Ball, Choice, Lights};
+use crate::world::light::{Choice, Lights};
 use crate::world::texture::Sampled;
 use crate::world::{Hit, Ray, RayKind, SurfacePoint, World};
 pub(super) use gather::Matt;
@@ -136,7 +136,7 @@ impl Path {
     /// Paths in a world, by these settings.
     pub fn new(world: &World, settings: &ResolvedSettings) -> Path {
         let lights = Lights::new(world);
-        let choice = Choice::new(&lights.lights, Ball::around(world).radius);
+        let choice = Choice::new(&lights.lights, world.ball().reach);
         let has_holes = world.materials().iter().any(|m| !m.layers().opacity.is(Rgb::ONE));
         let emits = |m: &std::sync::Arc<crate::scene::Material>| !m.layers().emit.is(Rgb::ZERO);
         let has_shine =

@@ -5,6 +5,7 @@
 //! it about rays; [`Hit::spawn`] goes on from where a ray ended.
 
 mod aggregate;
+mod bounding;
 pub mod bsdf;
 pub mod bvh;
 mod emitter;

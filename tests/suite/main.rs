@@ -4,6 +4,7 @@
 
 mod accelerators;
 mod animation;
+mod balls;
 mod command;
 mod denoise;
 mod diagnostics;

@@ -9,16 +9,17 @@
 //!
 //! Where photons are sparse, or the surface met is too close for a disc of them, the path goes on as any other: the
 //! estimate is blurred by no more than a few times the distance of photons where there is light.
-//! More samples shoot more photons, and the discs shrink.
+//! More samples shoot more photons, and the discs shrink. Those of caustics are sent only to what may be the first mirror or glass on
+//! their way; all others would leave none.
 
 mod map;
 mod shoot;
 
 use super::settings::ResolvedSettings;
 use super::tiles::{Watch, on_threads};
-use crate::scene::Rgb;
+use crate::scene::{Material, Rgb, Texture};
 use crate::world::bsdf::Bsdf;
-use crate::world::light::{Ball, Choice, Lights};
+use crate::world::light::{Aim, Ball, Choice, Lights, Targets};
 use crate::world::{Hit, World};
 use map::{Map, Photon, Query};
 use shoot::Shooting;
@@ -37,14 +38,14 @@ pub struct Maps {
 /// Photons in an estimate: of all light, which is averaged over many places, and of caustics, which are seen as they are.
 const MOST: [usize; 2] = [16, 64];
 
-/// Paths from the lamps for each sample of a pixel, and at most: of all light, and of caustics, most of which end at once.
+/// Paths from the lamps for each sample of a pixel, and at most: of all light, and of caustics, many of which end at once.
 const PATHS: [[u32; 2]; 2] = [[1 << 12, 1 << 20], [1 << 15, 1 << 22]];
 
 /// What is shot, for who looks on.
 const PHASES: [&str; 2] = ["photons", "caustics"];
 
-/// Photons kept at most.
-const ROOM: [usize; 2] = [1 << 22, 1 << 21];
+/// Photons after which there are enough: for each sample of a pixel, and at most. Of caustics that are aimed every second path leaves one.
+const ROOM: [[u32; 2]; 2] = [[1 << 22, 1 << 22], [1 << 14, 1 << 21]];
 
 /// An estimate reaches no farther than so many times the middle distance of photons: where they are sparser there is less light
 /// than blur.
@@ -62,18 +63,26 @@ impl Maps {
         settings: &ResolvedSettings,
         watch: Watch<'_>,
     ) -> Option<Maps> {
-        let ball = Ball::around(world);
+        let ball = world.ball();
         let ResolvedSettings { depth, seed, samples, .. } = *settings;
-        let shooting = Shooting { world, lights, choice, ball, depth, seed, caustics: false, watch };
-        let map = |i: usize, shooting: Shooting<'_>| {
-            let [each, most] = PATHS[i];
+        let map = |i: usize, choice: &Choice, aim: &Aim| {
+            let shooting = Shooting { world, lights, choice, aim, depth, seed, caustics: i == 1, watch };
+            let [paths, room] =
+                [PATHS[i], ROOM[i]].map(|[each, most]| samples.saturating_mul(each).min(most));
             watch.progress.phase(PHASES[i]);
-            let photons = || shooting.photons(samples.saturating_mul(each).min(most), ROOM[i]);
+            let photons = || shooting.photons(paths, room as usize);
             on_threads(settings.threads, || Map::new(photons()?, watch))
         };
-        let global = map(0, shooting)?;
-        let bends = world.materials().iter().any(|material| bends(material));
-        let caustics = if bends { map(1, Shooting { caustics: true, ..shooting })? } else { Map::default() };
+        let global = map(0, choice, &Aim::Anything(ball))?;
+        let caustics = match world.balls_of(bends) {
+            Some(balls) if balls.is_empty() => Map::default(),
+            Some(balls) => {
+                let aim = Aim::At(Targets::new(balls, ball));
+                map(1, &shoot::choice(lights, &aim, seed), &aim)?
+            }
+            // Nothing can be left out where mirrors go on for ever.
+            None => map(1, choice, &Aim::Anything(ball))?,
+        };
         let reach = |map: &Map, most| REACH * map.spacing(most).unwrap_or(0.0);
         let radii = [reach(&global, MOST[0]), reach(&caustics, MOST[1])];
         Some(Maps { global, caustics, radii, lit: lights.from_afar().then_some(ball), depth })
@@ -82,7 +91,7 @@ impl Maps {
     /// What a surface sends on of all light, at the end of a segment that begins at a matt surface. None where photons cannot
     /// tell.
     pub fn all(&self, hit: &Hit<'_>, bsdf: &Bsdf, segment: u32) -> Option<Rgb> {
-        let outside = |ball: &Ball| ball.center.distance_squared(hit.point) > ball.radius * ball.radius;
+        let outside = |ball: &Ball| ball.center.distance_squared(hit.point) > ball.reach * ball.reach;
         if hit.t < CORNER * self.radii[0] || self.lit.as_ref().is_some_and(outside) {
             return None;
         }
@@ -104,9 +113,14 @@ impl Maps {
     }
 }
 
-fn bends(material: &crate::scene::Material) -> bool {
-    let zero = |texture: &crate::scene::Texture| texture.is(Rgb::ZERO);
-    material.layers.as_deref().is_some_and(|l| !(zero(&l.transmit) && zero(&l.metal) && zero(&l.reflect)))
+/// Whether a material may send light on among caustics: by what is smooth, or by whatever has no base beside it.
+fn bends(material: &Material) -> bool {
+    let Some(layers) = material.layers.as_deref() else { return false };
+    let zero = |texture: &Texture| texture.is(Rgb::ZERO);
+    let surely = |texture: &Texture| matches!(texture, Texture::Constant(value) if *value != Rgb::ZERO);
+    let has_base = surely(&material.diffuse) || surely(&layers.specular);
+    let is_mirror = !(zero(&layers.metal) && zero(&layers.reflect));
+    !zero(&layers.transmit) || is_mirror && !(has_base && surely(&layers.roughness))
 }
 
 /// What becomes of a photon's power: sent on to where the surface is seen from, per area and solid angle.

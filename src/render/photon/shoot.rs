@@ -1,13 +1,14 @@
 //! Light followed from the lamps: where it arrives on surfaces that spread it, photons are left. Knows nothing of cameras.
 
 use super::map::Photon;
+use crate::math::colour::mean;
 use crate::render::medium::Inside;
 use crate::render::path::survival;
 use crate::render::sampler::Sampler;
 use crate::render::tiles::Watch;
 use crate::scene::Rgb;
 use crate::world::bsdf::Bsdf;
-use crate::world::light::{Ball, Choice, Light, Lights};
+use crate::world::light::{Aim, Choice, Light, Lights};
 use crate::world::texture::Sampled;
 use crate::world::{Ray, RayKind, World};
 use rayon::prelude::*;
@@ -21,8 +22,8 @@ pub struct Shooting<'a> {
     pub lights: &'a Lights,
     /// How often each is asked.
     pub choice: &'a Choice,
-    /// Holds what light from afar shall meet.
-    pub ball: Ball,
+    /// What light shall meet.
+    pub aim: &'a Aim,
     /// Most segments from lamp to camera.
     pub depth: u32,
     /// Of the random numbers.
@@ -51,6 +52,24 @@ const CHUNK: u32 = 1 << 8;
 
 /// The row of random numbers that no pixel has.
 const NO_ROW: u32 = u32::MAX;
+
+/// Rays of which the power of lights is measured, and of each at most.
+const PROBES: [usize; 2] = [1 << 16, 1 << 10];
+
+/// The column of random numbers that measure, beside those of the two maps.
+const PROBING: u32 = 2;
+
+/// How often lights are chosen that are aimed: by what some rays of each carry.
+pub fn choice(lights: &Lights, aim: &Aim, seed: u64) -> Choice {
+    let n = (PROBES[0] / lights.lights.len().max(1)).clamp(1, PROBES[1]) as u32;
+    let probe = |light: &Light, i: u32| {
+        let mut sampler = Sampler::new(seed, PROBING, NO_ROW, i);
+        let (side, place, way) = (sampler.next_2d(), sampler.next_2d(), sampler.next_2d());
+        light.emit(place, way, side.y, aim).map_or(0.0, |emitted| mean(emitted.power))
+    };
+    let power = |light: &Light| (0..n).map(|i| probe(light, i)).sum::<f64>() / f64::from(n);
+    Choice::by(lights.lights.iter().map(power).collect())
+}
 
 impl Shooting<'_> {
     /// The photons of so many paths, or of fewer where there are as many photons as can be kept. None where
@@ -87,7 +106,7 @@ impl Shooting<'_> {
         let (which, place, way) = (sampler.next_2d(), sampler.next_2d(), sampler.next_2d());
         let Some((i, often)) = self.choice.pick(which.x) else { return Ok(()) };
         let light = &self.lights.lights[i];
-        let Some(emitted) = light.emit(place, way, which.y, &self.ball) else { return Ok(()) };
+        let Some(emitted) = light.emit(place, way, which.y, self.aim) else { return Ok(()) };
         let power = emitted.power / often;
         let mut flight = Flight { ray: emitted.ray, power, inside: Inside::NOTHING, segment: 1, sampler };
         while self.follow(light, &mut flight, photons)? {}

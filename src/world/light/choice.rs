@@ -19,8 +19,12 @@ pub struct Choice {
 impl Choice {
     /// Over lights that shine on a scene of this radius.
     pub fn new(lights: &[Light], radius: f64) -> Choice {
-        let n = lights.len() as f64;
-        let power: Vec<f64> = lights.iter().map(|light| light.power(radius)).collect();
+        Choice::by(lights.iter().map(|light| light.power(radius)).collect())
+    }
+
+    /// By what each light sends, in any unit.
+    pub fn by(power: Vec<f64>) -> Choice {
+        let n = power.len() as f64;
         let total: f64 = power.iter().sum();
         let mut sum = 0.0;
         let sums = power.iter().map(|power| {

@@ -4,23 +4,28 @@
 //! The estimate is always the product of visibility, geometry and radiance, sample by sample: a tracer multiplies
 //! [`LightSample::weight`] by BSDF, cosine and visibility and averages.
 
+mod aim;
 mod choice;
 mod emission;
 mod picture;
 mod pieces;
 mod reach;
 mod surface;
+mod targets;
 
 use super::hit::{Hit, SurfacePoint};
 use super::{Emitter, PlacedLight, PrimitiveId, Ray, RayKind, World};
+pub use crate::geometry::balls::Ball;
 use crate::math::elementary::{sin_cos_degrees, sin_cos_turns};
 use crate::scene::{LightSource, Rgb, Sky};
+pub use aim::Aim;
 pub use choice::Choice;
-pub use emission::{Ball, Emitted};
+pub use emission::Emitted;
 use glam::{DVec2, DVec3};
 use picture::PictureSky;
 use std::f64::consts::PI;
 pub use surface::{AreaLight, emits_inward};
+pub use targets::Targets;
 
 /// All lights of a world, ready.
 #[derive(Debug, Default)]

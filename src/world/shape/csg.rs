@@ -8,6 +8,7 @@
 //! two faces that are flush leave no wall inside a union, no lid on a difference, and belong to the part that is written first. A
 //! ray that only touches a part does not turn it.
 
+mod ball;
 mod build;
 #[cfg(test)]
 mod tests;
@@ -184,6 +185,11 @@ impl Csg {
     /// Its number.
     pub fn part_number(meet: &Meet) -> u32 {
         meet.part & !COINCIDENT
+    }
+
+    /// All parts.
+    pub fn parts(&self) -> &[Leaf] {
+        &self.parts
     }
 
     /// The part of this number.

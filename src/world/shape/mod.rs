@@ -4,6 +4,7 @@
 //! wins is turned into a [`Surface`]. Surfaces carry a bound on the error of their point, large enough that a ray started
 //! beyond it does not meet the same shape at the same place again.
 
+pub mod ball;
 mod carry;
 mod cone;
 pub mod csg;
