@@ -41,8 +41,8 @@ pub fn tracer(
     Some(match kind {
         TracerKind::Raycast => Box::new(whitted::Whitted::raycast(world, settings)),
         TracerKind::Whitted => Box::new(whitted::Whitted::new(world, settings)),
-        TracerKind::Path => Box::new(path::Path::new(world, settings)),
-        TracerKind::MonteCarlo => Box::new(path::Path::branching(world, settings)),
+        TracerKind::Path => Box::new(path::Path::with_roulette(world, view, settings, watch)?),
+        TracerKind::MonteCarlo => Box::new(path::Path::branching(world, view, settings, watch)?),
         TracerKind::Irradiance => Box::new(path::Path::with_records(world, view, settings, watch)?),
         TracerKind::Photon => Box::new(path::Path::with_photons(world, settings, watch)?),
     })

@@ -5,13 +5,14 @@
 //!
 //! What a light sends is found in two ways, by asking it and by meeting it; each counts by its share of the two densities
 //! (the balance heuristic of Veach & Guibas, 1995), so that neither is counted twice. Lights without extent are only asked;
-//! smooth mirrors and glass only meet. From the fifth segment on, a path that carries little ends by chance and the others
-//! count for more. With the default depth the picture has no bias; a `depth` leaves out what longer paths would bring.
+//! smooth mirrors and glass only meet. A path that carries little ends by chance and the others count for more
+//! (see `roulette`). With the default depth the picture has no bias; a `depth` leaves out what longer paths would bring.
 //!
 //! Glass casts a shadow here, and what it gathers is found by the paths that meet a light through it: light from `point`,
 //! `spot` and `sun` through smooth glass cannot be found so, and is missing.
 
 mod gather;
+mod roulette;
 
 use super::Tracer;
 use super::camera::View;
@@ -28,6 +29,8 @@ use crate::world::texture::Sampled;
 use crate::world::{Hit, Ray, RayKind, SurfacePoint, World};
 pub(super) use gather::Matt;
 use glam::{DVec2, DVec3};
+use roulette::Roulette;
+pub(super) use roulette::survival;
 use std::f64::consts::PI;
 
 /// The tracers `path`, `montecarlo`, `irradiance` and `photon`.
@@ -44,6 +47,7 @@ pub struct Path {
     records: Option<Records>,
     /// True where a ray may meet what shines.
     has_shine: bool,
+    roulette: Roulette,
 }
 
 /// Branches of `montecarlo`. A power of two, so that the points of a surface's ways are even.
@@ -51,13 +55,6 @@ const BRANCHES: u32 = 4;
 
 /// In place of a number of chance where there is nothing to choose.
 const CERTAIN: f64 = 0.5;
-
-/// Paths end by chance from this segment on.
-const FIRST_ROULETTE: u32 = 5;
-
-/// A path that loses nothing would go on for ever between perfect mirrors: after [`LONG`] segments one in 64 ends.
-const MOST_SURVIVAL: f64 = 1.0 - 1.0 / 64.0;
-const LONG: u32 = 256;
 
 /// The surface that the last segment came from, and how likely its direction was.
 #[derive(Clone, Copy)]
@@ -129,6 +126,7 @@ struct Walk<'a> {
     /// Of its first segment, once it has met something.
     first_length: f64,
     sum: Rgb,
+    roulette: &'a Roulette,
     sampler: &'a mut Sampler,
 }
 
@@ -142,13 +140,41 @@ impl Path {
         let has_shine =
             lights.lights.iter().any(|light| !light.is_delta()) || world.materials().iter().any(emits);
         let ResolvedSettings { depth, background, .. } = *settings;
-        let (photons, records) = (None, None);
-        Path { lights, choice, depth, background, has_holes, branches: 1, photons, records, has_shine }
+        let (photons, records, roulette) = (None, None, Roulette::PLAIN);
+        Path {
+            lights,
+            choice,
+            depth,
+            background,
+            has_holes,
+            branches: 1,
+            photons,
+            records,
+            has_shine,
+            roulette,
+        }
     }
 
-    /// Paths that branch once.
-    pub fn branching(world: &World, settings: &ResolvedSettings) -> Path {
-        Path { branches: BRANCHES, ..Path::new(world, settings) }
+    /// Paths that end by chance where that pays. None where learning it is called off.
+    pub fn with_roulette(
+        world: &World,
+        view: &View,
+        settings: &ResolvedSettings,
+        watch: Watch<'_>,
+    ) -> Option<Path> {
+        let path = Path::new(world, settings);
+        let roulette = Roulette::learned(world, &path, view, settings, watch)?;
+        Some(Path { roulette, ..path })
+    }
+
+    /// The same, with paths that branch once.
+    pub fn branching(
+        world: &World,
+        view: &View,
+        settings: &ResolvedSettings,
+        watch: Watch<'_>,
+    ) -> Option<Path> {
+        Some(Path { branches: BRANCHES, ..Path::with_roulette(world, view, settings, watch)? })
     }
 
     /// Paths that photons end. None where shooting them is called off.
@@ -175,7 +201,8 @@ impl Tracer for Path {
     fn radiance(&self, world: &World, ray: Ray, sampler: &mut Sampler) -> Rgb {
         sampler.rays.camera += 1;
         let stage = if self.photons.is_some() { Stage::Seen } else { Stage::Whole };
-        let mut walk = Walk { branches: self.branches, stage, ..Walk::from_camera(ray, sampler) };
+        let mut walk =
+            Walk { branches: self.branches, stage, ..Walk::from_camera(ray, &self.roulette, sampler) };
         if let Err(fault) = self.trace(world, &mut walk) {
             walk.sampler.undefined = Some(fault);
         }
@@ -372,13 +399,8 @@ fn balance(this: f64, other: f64) -> f64 {
     if this > 0.0 { this / (this + other) } else { 0.0 }
 }
 
-/// How often what carries so much goes on from a segment.
-pub(super) fn survival(carried: f64, segment: u32) -> f64 {
-    carried.min(if segment < LONG { 1.0 } else { MOST_SURVIVAL })
-}
-
 impl<'a> Walk<'a> {
-    fn from_camera(ray: Ray, sampler: &'a mut Sampler) -> Walk<'a> {
+    fn from_camera(ray: Ray, roulette: &'a Roulette, sampler: &'a mut Sampler) -> Walk<'a> {
         Walk {
             ray,
             weight: Rgb::ONE,
@@ -392,6 +414,7 @@ impl<'a> Walk<'a> {
             records: None,
             first_length: f64::INFINITY,
             sum: Rgb::ZERO,
+            roulette,
             sampler,
         }
     }
@@ -439,15 +462,18 @@ impl Walk<'_> {
         self.stage = self.stage.after(self.last.is_none() || !bsdf.has_base());
         self.seen &= self.last.is_none();
         self.segment += 1;
-        self.segment < FIRST_ROULETTE || self.survives()
+        self.survives()
     }
 
     /// Ends by chance where little is carried; what goes on counts for those that ended.
     fn survives(&mut self) -> bool {
-        let survival = survival(self.weight.max_element(), self.segment);
-        let goes_on = self.sampler.next_1d() < survival;
+        let carried = self.weight.max_element();
+        let Some(survival) = self.roulette.survival(carried, self.segment, self.last.is_none()) else {
+            return true;
+        };
+        let Some(chance) = self.sampler.next_set_if(survival < 1.0) else { return true };
         self.weight /= survival;
-        goes_on
+        chance.point(0, 1).x < survival
     }
 
     /// Goes on from a surface whose lobes are told, off its smooth mirror if it has one. False where the path ends.

@@ -32,7 +32,7 @@ impl Path {
         ray: Ray,
         sampler: &mut Sampler,
     ) -> Sampled<Option<Matt<'w>>> {
-        let mut walk = Walk::from_camera(ray, sampler);
+        let mut walk = Walk::from_camera(ray, &self.roulette, sampler);
         loop {
             let Some(hit) = world.closest(&walk.ray) else { return Ok(None) };
             let bsdf = Bsdf::at(world, &hit, &walk.ray)?;
@@ -79,7 +79,7 @@ impl Path {
             seen: false,
             stage: Stage::Gathered,
             records: Some(records),
-            ..Walk::from_camera(at.hit.spawn(wi, RayKind::Indirect), sampler)
+            ..Walk::from_camera(at.hit.spawn(wi, RayKind::Indirect), &self.roulette, sampler)
         };
         self.trace(world, &mut walk)?;
         Ok((walk.sum, walk.first_length))
