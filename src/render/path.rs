@@ -227,10 +227,9 @@ impl Path {
             }
             return Ok(false);
         };
-        match &Bsdf::at(world, hit, &walk.ray) {
-            Ok(bsdf) => self.arrive(world, hit, bsdf, walk),
-            Err(fault) => Err(*fault),
-        }
+        let mut bsdf = Bsdf::BARE;
+        bsdf.fill(world, hit, &walk.ray)?;
+        self.arrive(world, hit, &bsdf, walk)
     }
 
     /// Adds what a surface sends along the path's ray, and goes on from there. False where the path ends.
@@ -305,12 +304,13 @@ impl Path {
         let lobe = |i| if one_way { CERTAIN } else { chance(i).x };
         let way = |i| bsdf.bounce(odds, lobe(i), ways.point(i, n));
         if n == 1 {
-            let Some(bounce) = way(0) else { return Ok(false) };
+            let chosen = way(0);
+            let Some(bounce) = &chosen else { return Ok(false) };
             if self.is_known(world, hit, bsdf, walk) {
                 walk.kept = bounce.density.map_or(Rgb::ONE, |_| bsdf.beside_matt(bounce.direction));
             }
             let goes_on = self.has_shine || walk.kept != Rgb::ZERO;
-            return Ok(goes_on && walk.leave(hit, bsdf, &bounce));
+            return Ok(goes_on && walk.leave(hit, bsdf, bounce));
         }
         for bounce in (0..n).filter_map(way) {
             let mut branch = walk.branch();

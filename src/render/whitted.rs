@@ -140,8 +140,9 @@ impl Whitted {
         let Some(hit) = &met else {
             return Ok(task.weight * task.inside.kept(f64::INFINITY) * self.beyond(&task.ray));
         };
-        let found = Bsdf::at(world, hit, &task.ray);
-        let bsdf = found.as_ref().map_err(|fault| *fault)?;
+        let mut bsdf = Bsdf::BARE;
+        bsdf.fill(world, hit, &task.ray)?;
+        let bsdf = &bsdf;
         let mut weight = task.weight * task.inside.left(bsdf, hit.t);
         if bsdf.opacity < 1.0 {
             let past = Task {

@@ -100,19 +100,20 @@ impl World {
         (path, shape): (&Path<'w>, Option<&'w Shape>),
         transforms: impl Iterator<Item = &'t Affine> + Clone,
     ) -> Option<Hit<'w>> {
-        let mut local = *ray;
+        let mut moved = None;
         for transform in transforms.clone() {
-            local = local.into_local(transform)?.0;
+            moved = Some(moved.as_ref().unwrap_or(ray).into_local(transform)?.0);
         }
+        let local = moved.as_ref().unwrap_or(ray);
         let material = &self.materials[self.material_on(path, shape, candidate) as usize];
         let (mut own_point, mut worn) = (None, None);
         let mut surface = match (shape, path.aggregate) {
             (Some(Shape::Csg(csg)), _) => {
-                let part = csg.surface(&local, &candidate.meet);
+                let part = csg.surface(local, &candidate.meet);
                 own_point = Some(part.own_point);
                 part.whole
             }
-            (Some(shape), _) => shape.surface(&local, &candidate.meet),
+            (Some(shape), _) => shape.surface(local, &candidate.meet),
             (None, Aggregate::Mesh(mesh)) => {
                 worn = mesh.shape.worn_at(candidate.id.part, &candidate.meet);
                 own_point = worn.map(|place| place.rest());
@@ -133,7 +134,7 @@ impl World {
             local_point,
             worn,
             material,
-            fault: shape.and_then(|shape| shape.fault(&local, &candidate.meet)),
+            fault: shape.and_then(|shape| shape.fault(local, &candidate.meet)),
             primitive: candidate.id,
         })
     }

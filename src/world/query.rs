@@ -32,8 +32,9 @@ pub(super) struct Query<'w> {
 
 /// A ray in an aggregate's space, and where that space stands.
 #[derive(Clone, Copy)]
-struct Local {
-    ray: LocalRay,
+struct Local<'r> {
+    /// Where it is already: a copy of what was just written waits for the writes.
+    ray: &'r LocalRay,
     /// How many of the ray's distances make one of the world's: a power of two.
     per_world: f64,
     /// The same the other way round.
@@ -42,9 +43,9 @@ struct Local {
     instance: u64,
 }
 
-impl Local {
+impl<'r> Local<'r> {
     #[inline(always)]
-    fn new(ray: LocalRay, per_world: f64, instance: u64) -> Local {
+    fn new(ray: &'r LocalRay, per_world: f64, instance: u64) -> Local<'r> {
         Local { ray, per_world, world_per: 1.0 / per_world, instance }
     }
 }
@@ -61,15 +62,15 @@ impl<'w> Query<'w> {
         any: bool,
     ) -> Option<Candidate> {
         let mut query = Query { world, kind, any, limit, found: None };
-        query.visit(&world.aggregates[0], &Local::new(*ray, per_world, 0));
+        query.visit(&world.aggregates[0], &Local::new(ray, per_world, 0));
         query.found
     }
 
-    fn visit(&mut self, aggregate: &Aggregate, local: &Local) {
+    fn visit(&mut self, aggregate: &Aggregate, local: &Local<'_>) {
         match aggregate {
             Aggregate::Group(group) => self.visit_group(group, local),
             Aggregate::Mesh(mesh) => {
-                let met = mesh.shape.meet_nearest(&local.ray, self.limit * local.per_world, self.any);
+                let met = mesh.shape.meet_nearest(local.ray, self.limit * local.per_world, self.any);
                 if let Some((position, meet)) = met {
                     let part = mesh.shape.triangle_at(position);
                     let id = PrimitiveId { instance: local.instance, shape: 0, part };
@@ -80,7 +81,7 @@ impl<'w> Query<'w> {
     }
 
     #[inline]
-    fn visit_group(&mut self, group: &Group, local: &Local) {
+    fn visit_group(&mut self, group: &Group, local: &Local<'_>) {
         self.each(&group.tree, local, |query, range| {
             for position in range {
                 query.visit_item(group, position, local);
@@ -93,7 +94,7 @@ impl<'w> Query<'w> {
 
     /// All that the ray may meet, near ones first; where any meeting will do in no order, until there is one.
     #[inline(always)]
-    fn each(&mut self, tree: &Tree, local: &Local, test: impl Fn(&mut Self, Range<usize>)) {
+    fn each(&mut self, tree: &Tree, local: &Local<'_>, test: impl Fn(&mut Self, Range<usize>)) {
         let LocalRay { origin, direction } = local.ray;
         let limit = self.limit * local.per_world;
         if self.any {
@@ -110,7 +111,7 @@ impl<'w> Query<'w> {
     }
 
     #[inline]
-    fn visit_item(&mut self, group: &Group, position: usize, local: &Local) {
+    fn visit_item(&mut self, group: &Group, position: usize, local: &Local<'_>) {
         if !group.hide.is_empty()
             && is_hidden(group.hide[group.number_of(position as u32) as usize], self.kind)
         {
@@ -120,28 +121,25 @@ impl<'w> Query<'w> {
             Item::Shape(shape, None) => self.meet(shape, group, position, local),
             Item::Shape(shape, Some(transform)) => {
                 let Some((ray, factor)) = local.ray.into_local(transform) else { return };
-                self.meet(shape, group, position, &Local::new(ray, local.per_world * factor, local.instance));
+                self.meet(shape, group, position, &Local::new(&ray, local.per_world * factor, local.instance));
             }
             Item::Instance(instance) => {
-                let (ray, factor) = match &instance.transform {
-                    None => (local.ray, 1.0),
-                    Some(transform) => match local.ray.into_local(transform) {
-                        None => return,
-                        Some(inside) => inside,
-                    },
-                };
+                let aggregate = &self.world.aggregates[instance.aggregate as usize];
                 let number = local.instance.saturating_add(instance.first);
-                let inside = Local::new(ray, local.per_world * factor, number);
-                self.visit(&self.world.aggregates[instance.aggregate as usize], &inside);
+                let Some(transform) = &instance.transform else {
+                    return self.visit(aggregate, &Local { instance: number, ..*local });
+                };
+                let Some((ray, factor)) = local.ray.into_local(transform) else { return };
+                self.visit(aggregate, &Local::new(&ray, local.per_world * factor, number));
             }
         }
     }
 
     /// A shape of a group, in its own space.
     #[inline(always)]
-    fn meet(&mut self, shape: &Shape, group: &Group, position: usize, inside: &Local) {
+    fn meet(&mut self, shape: &Shape, group: &Group, position: usize, inside: &Local<'_>) {
         let limit = self.limit * inside.per_world;
-        let met = if self.any { shape.meet_any(&inside.ray, limit) } else { shape.meet(&inside.ray, limit) };
+        let met = if self.any { shape.meet_any(inside.ray, limit) } else { shape.meet(inside.ray, limit) };
         if let Some(meet) = met {
             let part = Csg::part_number(&meet);
             let number = group.number_of(position as u32);
@@ -151,7 +149,7 @@ impl<'w> Query<'w> {
     }
 
     #[inline]
-    fn offer(&mut self, id: PrimitiveId, position: u32, meet: Meet, local: &Local) {
+    fn offer(&mut self, id: PrimitiveId, position: u32, meet: Meet, local: &Local<'_>) {
         let t = meet.t * local.world_per;
         let better = self.found.is_none_or(|best| t < best.t || (t == best.t && id < best.id));
         if better && t <= self.limit {

@@ -87,14 +87,14 @@ impl Tree {
     #[inline(always)]
     pub fn traverse(
         &self,
-        origin: DVec3,
-        direction: DVec3,
+        origin: &DVec3,
+        direction: &DVec3,
         t_max: f64,
         leaf: impl FnMut(Range<usize>, f64) -> f64,
     ) {
         match self {
             Tree::Bvh(tree) => tree.traverse(origin, direction, t_max, leaf),
-            Tree::KdTree(tree) => tree.traverse(origin, direction, t_max, leaf),
+            Tree::KdTree(tree) => tree.traverse(*origin, *direction, t_max, leaf),
         }
     }
 
@@ -102,15 +102,15 @@ impl Tree {
     #[inline(always)]
     pub fn traverse_any(
         &self,
-        origin: DVec3,
-        direction: DVec3,
+        origin: &DVec3,
+        direction: &DVec3,
         t_max: f64,
         mut leaf: impl FnMut(Range<usize>) -> bool,
     ) {
         match self {
             Tree::Bvh(tree) => tree.traverse_any(origin, direction, t_max, leaf),
             Tree::KdTree(tree) => {
-                tree.traverse(origin, direction, t_max, |range, t_max| if leaf(range) { t_max } else { -1.0 })
+                tree.traverse(*origin, *direction, t_max, |range, t_max| if leaf(range) { t_max } else { -1.0 })
             }
         }
     }
@@ -119,7 +119,7 @@ impl Tree {
     /// to go on.
     pub fn traverse_all(&self, origin: DVec3, direction: DVec3, mut leaf: impl FnMut(Range<usize>) -> bool) {
         match self {
-            Tree::Bvh(tree) => tree.traverse_any(origin, direction, f64::MAX, leaf),
+            Tree::Bvh(tree) => tree.traverse_any(&origin, &direction, f64::MAX, leaf),
             Tree::KdTree(tree) => {
                 let mut all = Vec::new();
                 tree.traverse(origin, direction, f64::MAX, |range, t_max| {

@@ -53,7 +53,7 @@ impl Diced {
     /// The nearest triangle's distance.
     pub fn meet(&self, line: &Line) -> Option<f64> {
         let mut best = f64::INFINITY;
-        self.tree.traverse(line.origin, line.direction, f64::INFINITY, |range, _| {
+        self.tree.traverse(&line.origin, &line.direction, f64::INFINITY, |range, _| {
             for &i in &self.tree.order()[range] {
                 if let Some(t) = triangle_moller_trumbore(line, self.triangles[i as usize]) {
                     best = best.min(t);

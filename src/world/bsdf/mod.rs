@@ -78,37 +78,41 @@ pub struct Scattered {
 
 impl Bsdf {
     /// The material where a ray met it. The world is only asked where a bump map needs its neighbourhood.
-    #[inline]
     pub fn at(world: &World, hit: &Hit<'_>, ray: &Ray) -> Sampled<Bsdf> {
+        let mut bsdf = Bsdf::BARE;
+        bsdf.fill(world, hit, ray)?;
+        Ok(bsdf)
+    }
+
+    /// The same in place of [`Bsdf::BARE`]: a copy of so much just written waits for the writes.
+    #[inline]
+    pub fn fill(&mut self, world: &World, hit: &Hit<'_>, ray: &Ray) -> Sampled<()> {
         if let Some(fault) = hit.fault {
             return Err(fault);
         }
         let material = hit.material;
-        let wo = -ray.direction;
-        let outside = wo.dot(hit.geometric_normal) >= 0.0;
-        let side = if outside { 1.0 } else { -1.0 };
-        let geometric = hit.geometric_normal * side;
+        self.wo = -ray.direction;
+        self.outside = self.wo.dot(hit.geometric_normal) >= 0.0;
+        let side = if self.outside { 1.0 } else { -1.0 };
+        self.geometric = hit.geometric_normal * side;
+        self.normal = normal::facing(hit.normal * side, self.geometric, self.wo);
         // What a pattern may ask is put together for patterns alone.
-        let diffuse = match &material.diffuse {
+        self.diffuse = match &material.diffuse {
             Texture::Constant(colour) => *colour,
             pattern => texture::colour(pattern, &TexturePoint::from(hit))?,
         };
-        let normal = normal::facing(hit.normal * side, geometric, wo);
-        let matt = Bsdf { wo, geometric, normal, outside, diffuse, ..Bsdf::BARE };
-        // Written where it is given back: a copy of so much just written waits for the writes.
-        if material.layers.is_none() { Ok(matt) } else { matt.with_layers(material, world, hit, ray) }
+        if material.layers.is_none() { Ok(()) } else { self.add_all_layers(material, world, hit, ray) }
     }
 
-    /// With what a material has beside its matt part.
-    fn with_layers(mut self, material: &Material, world: &World, hit: &Hit<'_>, ray: &Ray) -> Sampled<Bsdf> {
+    /// What a material has beside its matt part.
+    fn add_all_layers(&mut self, material: &Material, world: &World, hit: &Hit<'_>, ray: &Ray) -> Sampled<()> {
         let at = TexturePoint::from(hit);
         self.add_layers(material, &at)?;
-        self.bend_normal(world, hit, ray, &at)?;
-        Ok(self)
+        self.bend_normal(world, hit, ray, &at)
     }
 
     /// Reflects nothing.
-    const BARE: Bsdf = Bsdf {
+    pub const BARE: Bsdf = Bsdf {
         wo: DVec3::Z,
         geometric: DVec3::Z,
         normal: DVec3::Z,

@@ -141,13 +141,13 @@ impl Tree {
     #[inline(always)]
     pub fn traverse(
         &self,
-        origin: DVec3,
-        direction: DVec3,
+        origin: &DVec3,
+        direction: &DVec3,
         t_max: f64,
         mut leaf: impl FnMut(Range<usize>, f64) -> f64,
     ) {
         if let Some(t_max) = self.offer_loose(t_max, &mut leaf) {
-            wide::walk(self, [&origin, &direction], t_max, &mut leaf);
+            wide::walk(self, [origin, direction], t_max, &mut leaf);
         }
     }
 
@@ -155,14 +155,14 @@ impl Tree {
     #[inline(always)]
     pub fn traverse_any(
         &self,
-        origin: DVec3,
-        direction: DVec3,
+        origin: &DVec3,
+        direction: &DVec3,
         t_max: f64,
         mut leaf: impl FnMut(Range<usize>) -> bool,
     ) {
         let mut loose = |range, t_max| if leaf(range) { t_max } else { -1.0 };
         if let Some(t_max) = self.offer_loose(t_max, &mut loose) {
-            wide::walk_any(self, [&origin, &direction], t_max, &mut leaf);
+            wide::walk_any(self, [origin, direction], t_max, &mut leaf);
         }
     }
 

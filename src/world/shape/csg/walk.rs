@@ -305,7 +305,7 @@ impl Csg {
             }
         }
         if self.boxes.is_empty() {
-            self.tree.traverse(ray.origin, ray.direction, far, |range, t_max| {
+            self.tree.traverse(&ray.origin, &ray.direction, far, |range, t_max| {
                 for position in range {
                     self.gather_part(self.tree.order()[position], ray, walk);
                 }

@@ -24,9 +24,9 @@ impl Ordered<'_> {
     pub fn nearest(self, tree: &Tree, ray: &LocalRay, limit: f64, any: bool) -> Option<(usize, Meet)> {
         let mut search = Search::new(self, ray, limit, any);
         if any {
-            tree.traverse_any(ray.origin, ray.direction, limit, |range| search.goes_on(range));
+            tree.traverse_any(&ray.origin, &ray.direction, limit, |range| search.goes_on(range));
         } else {
-            tree.traverse(ray.origin, ray.direction, limit, |range, _| search.limit_after(range));
+            tree.traverse(&ray.origin, &ray.direction, limit, |range, _| search.limit_after(range));
         }
         search.found()
     }
