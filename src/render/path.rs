@@ -135,10 +135,9 @@ impl Path {
     pub fn new(world: &World, settings: &ResolvedSettings) -> Path {
         let lights = Lights::new(world);
         let choice = Choice::new(&lights.lights, world.ball().reach);
-        let has_holes = world.materials().iter().any(|m| !m.layers().opacity.is(Rgb::ONE));
-        let emits = |m: &std::sync::Arc<crate::scene::Material>| !m.layers().emit.is(Rgb::ZERO);
-        let has_shine =
-            lights.lights.iter().any(|light| !light.is_delta()) || world.materials().iter().any(emits);
+        let has_holes = world.materials().any(|m| !m.layers().opacity.is(Rgb::ONE));
+        let emits = |m: &crate::scene::Material| !m.layers().emit.is(Rgb::ZERO);
+        let has_shine = lights.lights.iter().any(|light| !light.is_delta()) || world.materials().any(emits);
         let ResolvedSettings { depth, background, .. } = *settings;
         let (photons, records, roulette) = (None, None, Roulette::PLAIN);
         Path {

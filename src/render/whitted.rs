@@ -42,7 +42,7 @@ impl Whitted {
             depth: settings.depth,
             background: settings.background,
             second_rays: true,
-            clear_shadows: world.materials().iter().any(|m| lets_light_through(m)),
+            clear_shadows: world.materials().any(lets_light_through),
         }
     }
 

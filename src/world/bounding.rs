@@ -26,7 +26,7 @@ impl World {
     /// Balls that hold between them every place of a wanted material that an indirect ray may meet: one of each shape, solid put
     /// together and mesh. None where one of them is infinite.
     pub fn balls_of(&self, wanted: impl Fn(&Material) -> bool) -> Option<Vec<Ball>> {
-        let wanted: Vec<bool> = self.materials.iter().map(|material| wanted(material)).collect();
+        let wanted: Vec<bool> = self.materials().map(wanted).collect();
         let holds = holding(&self.aggregates, &wanted);
         let mut gathering = Gathering { aggregates: &self.aggregates, wanted, holds, balls: Vec::new() };
         let all = Place { transform: Affine::IDENTITY, material: super::lower::DEFAULT_MATERIAL };

@@ -4,6 +4,7 @@
 //! clear of the surface whatever the rounding was, and no farther: no absolute distance appears. Pharr, Jakob & Humphreys,
 //! *Physically Based Rendering* (4th ed.) §6.8.
 
+use super::bsdf::Coat;
 use super::shape::mesh::WornPlace;
 use super::shape::{Uv, perpendicular};
 use super::texture::TextureFault;
@@ -33,8 +34,8 @@ pub struct Hit<'w> {
     pub local_point: DVec3,
     /// The place of the skin that was hit, for patterns of weights; none on what is no skin.
     pub worn: Option<WornPlace<'w>>,
-    /// The material.
-    pub material: &'w Material,
+    /// What it is made of.
+    pub(super) coat: &'w Coat,
     /// Why the surface is not known here: a function that makes it has no value. The pixel says so.
     pub fault: Option<TextureFault>,
     /// Which primitive of the world, for provenance and for emitters.
@@ -67,6 +68,11 @@ impl Hit<'_> {
     /// Unit tangent along growing u, perpendicular to `normal` (arbitrary where u has no direction).
     pub fn tangent(&self) -> DVec3 {
         tangent_for(self.normal, self.along_u)
+    }
+
+    /// What it is made of.
+    pub fn material(&self) -> &Material {
+        &self.coat.material
     }
 
     /// Surface parameters.

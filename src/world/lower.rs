@@ -12,6 +12,7 @@ mod survey;
 mod views;
 
 use super::aggregate::{Aggregate, Group, INHERITED, Instance, Item, Scope};
+use super::bsdf::Coat;
 use super::kept::Content;
 use super::shape::{self, EVERYTHING};
 use super::tree::Tree;
@@ -48,7 +49,8 @@ pub(super) fn lower(
     let (lights, emitters) = lights::gather(&aggregates, &materials, &mut sink);
     sink.extend(super::texture::load_skies(lights.iter().map(|placed| &*placed.light), assets));
     let reused = kept.reused();
-    (settled(World { lights, emitters, aggregates, materials, reused }), sink.into_sorted())
+    let coats = materials.into_iter().map(Coat::new).collect();
+    (settled(World { lights, emitters, aggregates, coats, reused }), sink.into_sorted())
 }
 
 /// See [`World::of_shapes`].
@@ -60,7 +62,8 @@ pub(super) fn lower_shapes(
     let (aggregates, materials, sink) = lowered(nodes, &WorldOptions::default(), assets, kept);
     let (lights, emitters) = (Vec::new(), Vec::new());
     let reused = kept.reused();
-    (settled(World { lights, emitters, aggregates, materials, reused }), sink.into_sorted())
+    let coats = materials.into_iter().map(Coat::new).collect();
+    (settled(World { lights, emitters, aggregates, coats, reused }), sink.into_sorted())
 }
 
 fn settled(mut world: World) -> World {

@@ -31,6 +31,7 @@ pub use hit::{Hit, SurfacePoint};
 pub use kept::Kept;
 
 use aggregate::Aggregate;
+use bsdf::Coat;
 use query::Query;
 use shape::LocalRay;
 
@@ -39,7 +40,6 @@ use crate::math::Aabb;
 use crate::scene::assets::{AssetCache, Loader};
 use crate::scene::{Accelerator, Material, Node, Rgb};
 use glam::DVec3;
-use std::sync::Arc;
 
 /// A half-line, or a piece of one.
 #[derive(Clone, Copy, Debug)]
@@ -122,7 +122,7 @@ pub struct World {
     pub emitters: Vec<Emitter>,
     /// The first is the scene itself, the others are what is placed in it.
     aggregates: Vec<Aggregate>,
-    materials: Vec<Arc<Material>>,
+    coats: Vec<Coat>,
     /// How many things were taken over from worlds before.
     reused: u64,
 }
@@ -209,8 +209,8 @@ impl World {
     }
 
     /// Every material that a hit may report, each once.
-    pub fn materials(&self) -> &[Arc<Material>] {
-        &self.materials
+    pub fn materials(&self) -> impl Iterator<Item = &Material> {
+        self.coats.iter().map(|coat| &*coat.material)
     }
 
     /// What was made.

@@ -105,7 +105,7 @@ impl World {
             moved = Some(moved.as_ref().unwrap_or(ray).into_local(transform)?.0);
         }
         let local = moved.as_ref().unwrap_or(ray);
-        let material = &self.materials[self.material_on(path, shape, candidate) as usize];
+        let coat = &self.coats[self.material_on(path, shape, candidate) as usize];
         let (mut own_point, mut worn) = (None, None);
         let mut surface = match (shape, path.aggregate) {
             (Some(Shape::Csg(csg)), _) => {
@@ -117,7 +117,7 @@ impl World {
             (None, Aggregate::Mesh(mesh)) => {
                 worn = mesh.shape.worn_at(candidate.id.part, &candidate.meet);
                 own_point = worn.map(|place| place.rest());
-                mesh.shape.surface(candidate.id.part, &candidate.meet, material.bends_normal())
+                mesh.shape.surface(candidate.id.part, &candidate.meet, coat.bends_normal())
             }
             (None, Aggregate::Group(_)) => return None,
         };
@@ -133,7 +133,7 @@ impl World {
             uv: surface.uv,
             local_point,
             worn,
-            material,
+            coat,
             fault: shape.and_then(|shape| shape.fault(local, &candidate.meet)),
             primitive: candidate.id,
         })

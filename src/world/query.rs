@@ -121,7 +121,12 @@ impl<'w> Query<'w> {
             Item::Shape(shape, None) => self.meet(shape, group, position, local),
             Item::Shape(shape, Some(transform)) => {
                 let Some((ray, factor)) = local.ray.into_local(transform) else { return };
-                self.meet(shape, group, position, &Local::new(&ray, local.per_world * factor, local.instance));
+                self.meet(
+                    shape,
+                    group,
+                    position,
+                    &Local::new(&ray, local.per_world * factor, local.instance),
+                );
             }
             Item::Instance(instance) => {
                 let aggregate = &self.world.aggregates[instance.aggregate as usize];

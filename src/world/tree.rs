@@ -109,9 +109,8 @@ impl Tree {
     ) {
         match self {
             Tree::Bvh(tree) => tree.traverse_any(origin, direction, t_max, leaf),
-            Tree::KdTree(tree) => {
-                tree.traverse(*origin, *direction, t_max, |range, t_max| if leaf(range) { t_max } else { -1.0 })
-            }
+            Tree::KdTree(tree) => tree
+                .traverse(*origin, *direction, t_max, |range, t_max| if leaf(range) { t_max } else { -1.0 }),
         }
     }
 

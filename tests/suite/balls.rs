@@ -75,7 +75,7 @@ fn every_place_of_glass_is_in_a_ball_and_plaster_is_not_asked_for() {
         let origin = target + DVec3::new(side(9.0), side(9.0), side(9.0));
         let direction = (target - origin).normalize();
         let ray = Ray { origin, direction, t_max: f64::INFINITY, kind: RayKind::Indirect };
-        let Some(hit) = world.closest(&ray).filter(|hit| clear(hit.material)) else { continue };
+        let Some(hit) = world.closest(&ray).filter(|hit| clear(hit.material())) else { continue };
         let of = balls.iter().position(|ball| ball.center.distance(hit.point) <= ball.reach);
         met[of.unwrap_or_else(|| panic!("{} is in no ball", hit.point))] += 1;
     }

@@ -4,6 +4,7 @@
 //! The meaning, one for all tracers: with mirror share r(θ), light is sent on by (1 − r)·base + r·mirror, where the base is
 //! diffuse ρ/π, a specular lobe and what is let through. `wo` and `wi` leave the surface. Surfaces shade on both sides.
 
+mod coat;
 mod energy;
 pub mod fresnel;
 pub mod lobes;
@@ -14,7 +15,8 @@ use super::hit::Hit;
 use super::light::{cosine_hemisphere, to_frame};
 use super::texture::{self, Sampled, TexturePoint};
 use super::{Ray, World};
-use crate::scene::{Fresnel, Lobe, Material, Rgb, Texture};
+use crate::scene::{Fresnel, Lobe, Material, Rgb};
+pub use coat::Coat;
 use energy::{Glass, Lost};
 use fresnel::{reflect, refract};
 use glam::{DVec2, DVec3};
@@ -90,25 +92,26 @@ impl Bsdf {
         if let Some(fault) = hit.fault {
             return Err(fault);
         }
-        let material = hit.material;
+        let coat = hit.coat;
+        if let Some(same) = &coat.same {
+            self.clone_from(same);
+            self.see(hit, ray);
+            return Ok(());
+        }
+        self.see(hit, ray);
+        let at = TexturePoint::from(hit);
+        self.add(&coat.material, &at)?;
+        self.bend_normal(world, hit, ray, &at)
+    }
+
+    /// From where it is seen.
+    #[inline]
+    fn see(&mut self, hit: &Hit<'_>, ray: &Ray) {
         self.wo = -ray.direction;
         self.outside = self.wo.dot(hit.geometric_normal) >= 0.0;
         let side = if self.outside { 1.0 } else { -1.0 };
         self.geometric = hit.geometric_normal * side;
         self.normal = normal::facing(hit.normal * side, self.geometric, self.wo);
-        // What a pattern may ask is put together for patterns alone.
-        self.diffuse = match &material.diffuse {
-            Texture::Constant(colour) => *colour,
-            pattern => texture::colour(pattern, &TexturePoint::from(hit))?,
-        };
-        if material.layers.is_none() { Ok(()) } else { self.add_all_layers(material, world, hit, ray) }
-    }
-
-    /// What a material has beside its matt part.
-    fn add_all_layers(&mut self, material: &Material, world: &World, hit: &Hit<'_>, ray: &Ray) -> Sampled<()> {
-        let at = TexturePoint::from(hit);
-        self.add_layers(material, &at)?;
-        self.bend_normal(world, hit, ray, &at)
     }
 
     /// Reflects nothing.
@@ -131,9 +134,11 @@ impl Bsdf {
         mirror: Mirror::None,
     };
 
-    fn add_layers(&mut self, material: &Material, at: &TexturePoint<'_>) -> Sampled<()> {
-        let layers = material.layers();
+    /// What a material is made of, beside its normal.
+    fn add(&mut self, material: &Material, at: &TexturePoint<'_>) -> Sampled<()> {
         let colour = |t| texture::colour(t, at);
+        self.diffuse = colour(&material.diffuse)?;
+        let Some(layers) = material.layers.as_deref() else { return Ok(()) };
         let number = |t| texture::number(t, at);
         self.opacity = texture::opacity(&layers.opacity, at)?;
         self.emit = colour(&layers.emit)?;

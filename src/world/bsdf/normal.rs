@@ -25,7 +25,7 @@ pub(super) fn onto_side(v: DVec3, side: DVec3) -> DVec3 {
 
 /// The normal by `normal_map` and `bump` on the outside of the surface; none where neither is given.
 pub(super) fn bent(world: &World, hit: &Hit<'_>, ray: &Ray, at: &TexturePoint<'_>) -> Sampled<Option<DVec3>> {
-    let layers = hit.material.layers();
+    let Some(layers) = hit.coat.material.layers.as_deref() else { return Ok(None) };
     let mapped = match &layers.normal_map {
         Some(map) => Some(mapped(map, hit, at)?),
         None => None,

@@ -23,7 +23,7 @@ fn down(x: f64) -> Ray {
 }
 
 fn greyness(world: &World, ray: &Ray) -> f64 {
-    match world.closest(ray).expect("a hit").material.diffuse {
+    match world.closest(ray).expect("a hit").material().diffuse {
         Texture::Constant(c) => c.x,
         Texture::Pattern(_) => f64::NAN,
     }
@@ -177,7 +177,7 @@ fn light_passes_what_lets_it_through() {
     let mut glass = object(sphere(DVec3::ZERO, 1.0));
     glass.material = Some(grey(0.5));
     let world = world_of(vec![node(glass), node(object(sphere(DVec3::Y * 9.0, 1.0)))], Accelerator::Bvh);
-    let half = |hit: &ogee::world::Hit<'_>| match hit.material.diffuse {
+    let half = |hit: &ogee::world::Hit<'_>| match hit.material().diffuse {
         Texture::Constant(c) if c.x == 0.5 => Rgb::splat(0.5),
         _ => Rgb::ZERO,
     };
