@@ -9,6 +9,12 @@
 //!
 //! Where no record holds, the path goes on as any other. All records are made before the picture, in an order that neither
 //! threads nor hashes reach.
+//!
+//! There are more of them than a cache that goes by the mean distance alone would make: about 1,050 on the Cornell box of 128 × 128 pixels at 16
+//! samples, half of them as short as they may be and nearly all others shortened by their neighbours. If neighbours did not agree 400 would do,
+//! for 1.8 times the error of 4 × 4 pixels (0.034 in place of 0.019), and asking for no more than the error that is borne (`ENOUGH` of 1) makes 560, for 1.6
+//! times. A least reach of 8 pixels makes 610 and takes 0.6 of the time, but what more samples gain in the rest makes the error no smaller, there, in
+//! `examples/window.scene` and, within chance, in a room lit by the sun on its floor; so it stays 4.
 
 mod grid;
 mod hemisphere;
