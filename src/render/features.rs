@@ -1,9 +1,10 @@
-//! What may be kept of a pixel beside its radiance, for layers of an EXR file: what the camera's rays meet first, and how sure the radiance is. Nothing of it is found out unless it is asked for. Knows neither files nor tracers.
+//! What may be kept of a pixel beside its radiance, for layers of an EXR file: what the camera's rays meet first, and how sure the radiance is. Nothing of it is found out unless it is asked for. Knows no files;
+//! tracers tell what they see anyway.
 
 use crate::diag::Span;
 use crate::scene::Rgb;
 use crate::world::bsdf::Bsdf;
-use crate::world::{Hit, Ray, World};
+use crate::world::{Hit, PrimitiveId, Ray, World};
 use glam::DVec3;
 
 /// Something that is kept of each pixel.
@@ -70,7 +71,7 @@ impl Layers {
     }
 
     /// True where it must be found out what the camera's rays meet.
-    fn look(self) -> bool {
+    pub fn look(self) -> bool {
         self.0 & !(1 << Layer::Variance as u8) != 0
     }
 
@@ -129,6 +130,52 @@ impl Source {
     }
 }
 
+/// What the camera's ray of one sample met first.
+#[derive(Clone, Copy, Debug)]
+pub struct Seen {
+    /// Distance along the ray, in scene units.
+    depth: f64,
+    position: DVec3,
+    primitive: PrimitiveId,
+    /// Zeros where the material has no value.
+    albedo: Rgb,
+    normal: DVec3,
+}
+
+/// What a tracer tells of a sample.
+#[derive(Clone, Copy, Debug, Default)]
+pub enum First {
+    /// Nobody asks.
+    #[default]
+    Unasked,
+    /// Nothing was met so far.
+    Awaited,
+    /// This was.
+    Seen(Seen),
+}
+
+impl First {
+    /// Takes what a ray met, where it is the first.
+    #[inline]
+    pub fn meet(&mut self, ray: &Ray, hit: &Hit<'_>) {
+        if let First::Awaited = self {
+            let depth = hit.t * ray.direction.length();
+            let (position, primitive) = (hit.point, hit.primitive);
+            *self = First::Seen(Seen { depth, position, primitive, albedo: Rgb::ZERO, normal: DVec3::ZERO });
+        }
+    }
+
+    /// Takes what that is made of.
+    #[inline]
+    pub fn look(&mut self, bsdf: &Bsdf) {
+        if let First::Seen(seen) = self
+            && seen.normal == DVec3::ZERO
+        {
+            (seen.albedo, seen.normal) = (bsdf.albedo(), bsdf.normal);
+        }
+    }
+}
+
 /// The features of one pixel's samples on the way to their means, summed in the order of the samples.
 #[derive(Clone, Debug, Default)]
 pub struct FeatureSum {
@@ -147,8 +194,8 @@ pub struct FeatureSum {
 }
 
 impl FeatureSum {
-    /// Takes a camera sample: its ray, where there is one, and the radiance along it.
-    pub fn add(&mut self, asked: Layers, world: &World, ray: Option<&Ray>, radiance: Rgb) {
+    /// Takes a camera sample: what its ray met first, and the radiance along it.
+    pub fn add(&mut self, asked: Layers, world: &World, first: First, radiance: Rgb) {
         self.samples += 1;
         if asked.has(Layer::Variance) && radiance.is_finite() {
             self.moments.add(radiance);
@@ -159,36 +206,30 @@ impl FeatureSum {
         if !asked.look() {
             return;
         }
-        let met = ray.and_then(|ray| Some((ray, world.closest(ray)?)));
-        let seen = met.map_or([Rgb::ZERO; 2], |(ray, hit)| {
+        let seen = if let First::Seen(seen) = first { Some(seen) } else { None };
+        if let Some(seen) = &seen {
+            self.meet(seen);
             if asked.has(Layer::Source) {
-                self.count(world, &hit);
+                self.count(world, seen.primitive);
             }
-            self.meet(world, ray, &hit, asked)
-        });
+        }
         if asked.guides() {
-            seen.into_iter().zip(&mut self.spread).for_each(|(x, moments)| moments.add(x));
+            let looks = seen.map_or([Rgb::ZERO; 2], |seen| [seen.albedo, seen.normal]);
+            looks.into_iter().zip(&mut self.spread).for_each(|(x, moments)| moments.add(x));
+            seen.into_iter().for_each(|seen| self.spread[2].add(seen.position));
         }
     }
 
-    /// Takes what a ray met; gives its albedo and normal.
-    fn meet(&mut self, world: &World, ray: &Ray, hit: &Hit<'_>, asked: Layers) -> [DVec3; 2] {
+    fn meet(&mut self, seen: &Seen) {
         self.hits += 1;
-        self.depth += hit.t * ray.direction.length();
-        self.position += hit.point;
-        if asked.guides() {
-            self.spread[2].add(hit.point);
-        }
-        // What has no value is magenta in the picture, and has no albedo here.
-        let Ok(bsdf) = Bsdf::at(world, hit, ray) else { return [Rgb::ZERO; 2] };
-        let (albedo, normal) = (bsdf.albedo(), bsdf.normal);
-        self.albedo += albedo;
-        self.normal += normal;
-        [albedo, normal]
+        self.depth += seen.depth;
+        self.position += seen.position;
+        self.albedo += seen.albedo;
+        self.normal += seen.normal;
     }
 
-    fn count(&mut self, world: &World, hit: &Hit<'_>) {
-        let Some(found) = world.provenance(hit.primitive) else { return };
+    fn count(&mut self, world: &World, primitive: PrimitiveId) {
+        let Some(found) = world.provenance(primitive) else { return };
         let source = Source { span: found.span, name: found.name };
         match self.sources.iter_mut().find(|(known, _)| *known == source) {
             Some((_, count)) => *count += 1,

@@ -6,7 +6,7 @@ use crate::world::{Ray, World};
 /// A way to find the radiance that arrives along a ray. Made by its constructor from a world, so that what it must prepare
 /// (a photon map, a cache) cannot be missing.
 pub trait Tracer: Sync {
-    /// Radiance along a camera ray, linear RGB. Called once per camera sample.
+    /// Radiance along a camera ray, linear RGB. Called once per camera sample. What the ray meets first is told to the sampler.
     fn radiance(&self, world: &World, ray: Ray, sampler: &mut sampler::Sampler) -> Rgb;
 }
 

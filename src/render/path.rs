@@ -226,8 +226,10 @@ impl Path {
             }
             return Ok(false);
         };
+        walk.sampler.first.meet(&walk.ray, hit);
         let mut bsdf = Bsdf::BARE;
         bsdf.fill(world, hit, &walk.ray)?;
+        walk.sampler.first.look(&bsdf);
         self.arrive(world, hit, &bsdf, walk)
     }
 

@@ -81,7 +81,9 @@ impl Pixel {
     /// The numbers of the next sample.
     fn sampler(&self, settings: &ResolvedSettings) -> Sampler {
         let [x, y] = self.place;
-        Sampler::new(settings.seed, x, y, self.taken).of_kind(settings.sampler, settings.samples)
+        let sampler =
+            Sampler::new(settings.seed, x, y, self.taken).of_kind(settings.sampler, settings.samples);
+        sampler.asking(settings.kept().look())
     }
 
     /// Takes the next sample by its numbers, and turns them to the one after it.
@@ -101,7 +103,7 @@ impl Pixel {
             note_non_finite(picture.world, ray, self.place, report);
         }
         if let Some(features) = &mut self.features {
-            features.add(picture.settings.kept(), picture.world, ray.as_ref(), radiance);
+            features.add(picture.settings.kept(), picture.world, sampler.first, radiance);
         }
         if sampler.undefined.is_some() {
             self.undefined = self.undefined.or(sampler.undefined);

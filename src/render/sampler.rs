@@ -8,6 +8,7 @@
 //! that begin at a multiple of 2ᵐ are stratified in every way that 2ᵐ boxes of equal area can stand. `stratified` has one point
 //! in each cell of a grid over all samples of the pixel, `independent` has points that know nothing of one another.
 
+use super::features::First;
 use crate::scene::SamplerKind;
 use crate::world::texture::TextureFault;
 use glam::DVec2;
@@ -29,6 +30,8 @@ pub struct Sampler {
     pub rays: RayCounts,
     /// The function of the scene that was undefined on the way, where one was. Such a pixel is shown magenta.
     pub undefined: Option<TextureFault>,
+    /// What the camera's ray met first, where that is asked for.
+    pub first: First,
 }
 
 /// How many rays were cast, by what for.
@@ -76,6 +79,7 @@ impl Sampler {
             samples: 1,
             rays: RayCounts::default(),
             undefined: None,
+            first: First::Unasked,
         }
     }
 
@@ -84,10 +88,16 @@ impl Sampler {
         Sampler { kind, samples, ..self }
     }
 
+    /// The same sample, of which it is asked what the camera's ray meets first.
+    pub fn asking(self, asks: bool) -> Sampler {
+        Sampler { first: if asks { First::Awaited } else { First::Unasked }, ..self }
+    }
+
     /// The next sample of the pixel, with nothing noted.
     pub fn restart(&mut self) {
         let sample = self.sample + 1;
-        *self = Sampler { sample, dimension: 0, rays: RayCounts::default(), undefined: None, ..*self };
+        let first = if let First::Unasked = self.first { First::Unasked } else { First::Awaited };
+        *self = Sampler { sample, dimension: 0, rays: RayCounts::default(), undefined: None, first, ..*self };
     }
 
     /// The next number, in (0, 1).

@@ -140,8 +140,10 @@ impl Whitted {
         let Some(hit) = &met else {
             return Ok(task.weight * task.inside.kept(f64::INFINITY) * self.beyond(&task.ray));
         };
+        sampler.first.meet(&task.ray, hit);
         let mut bsdf = Bsdf::BARE;
         bsdf.fill(world, hit, &task.ray)?;
+        sampler.first.look(&bsdf);
         let bsdf = &bsdf;
         let mut weight = task.weight * task.inside.left(bsdf, hit.t);
         if bsdf.opacity < 1.0 {
