@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Measures Ogee's `path` against Mitsuba 3 (`scalar_rgb`, `path`) on the same scenes, one thread each, in turn: CPU seconds and
-the error of each sample count, and the seconds to one error. The error needs no reference: it is the spread of four pictures by
-other random numbers. Means of both are printed, so that a bias would be seen.
+"""Measures Ogee's `path` against Mitsuba 3 (`scalar_rgb`, `path`) on the same scenes, one thread each, in turn: CPU seconds,
+an EXR file written by each included, and the error of each sample count, and the seconds to one error. The error needs no
+reference: it is the spread of four pictures by other random numbers. Means of both are printed, so that a bias would be seen.
 
 usage: compare.py [--samples N,…] [--sampler sobol|independent] [--error E] [--ogee PATH]
 needs: `pip install mitsuba numpy`, and `cargo build --release`."""
@@ -102,10 +102,12 @@ def scenes(folder):
     }
 
 
-def by_mitsuba(scene, samples, seed):
+def by_mitsuba(folder, scene, samples, seed):
     start = time.process_time()
-    image = np.array(mi.render(scene, spp=samples, seed=seed), dtype=np.float64)[..., :3]
-    return image, time.process_time() - start
+    rendered = mi.render(scene, spp=samples, seed=seed)
+    mi.Bitmap(rendered).write(os.path.join(folder, "peer.exr"))
+    seconds = time.process_time() - start
+    return np.array(rendered, dtype=np.float64)[..., :3], seconds
 
 
 def by_ogee(args, folder, name, samples, seed):
@@ -148,7 +150,7 @@ def compare(args, folder):
         for samples in map(int, args.samples.split(",")):
             made = {"mitsuba": [], "ogee": []}
             for seed in range(1, SEEDS + 1):
-                made["mitsuba"].append(by_mitsuba(scene, samples, seed))
+                made["mitsuba"].append(by_mitsuba(folder, scene, samples, seed))
                 made["ogee"].append(by_ogee(args, folder, name, samples, seed))
             found = {who: (error(all), min(t for _, t in all)) for who, all in made.items()}
             means = {who: np.mean([image for image, _ in all]) for who, all in made.items()}
