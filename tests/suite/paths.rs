@@ -3,7 +3,7 @@
 use crate::stage::*;
 use glam::DVec3;
 use ogee::render::features::{Layer, Layers as Kept};
-use ogee::render::settings::ResolvedSettings;
+use ogee::render::settings::{Crop, ResolvedSettings};
 use ogee::scene::*;
 use ogee::world::World;
 use std::f64::consts::PI;
@@ -147,6 +147,43 @@ fn a_white_box_has_the_radiosity_of_its_form_factors() {
         for (p, exact) in truths {
             agrees(by_paths(&room, centre, p, 8192), exact);
         }
+    }
+}
+
+/// The settings of a picture of so many pixels that its roulette is learned, of which a part is rendered.
+fn learned(tracer: TracerKind, samples: u32, crop: Crop) -> ResolvedSettings {
+    ResolvedSettings { size: [256, 128], crop, tracer, ..paths(samples, 3) }
+}
+
+#[test]
+fn a_learned_roulette_leaves_the_radiosity_of_a_white_box() {
+    let eye = camera(DVec3::splat(0.5), DVec3::new(0.5, 0.0, 0.5), 1e-3);
+    let crop = Crop { x: 96, y: 32, width: 64, height: 64 };
+    for (tracer, samples) in [(TracerKind::Path, 64), (TracerKind::MonteCarlo, 16)] {
+        // Every pixel sees the same place.
+        let film =
+            picture(&white_box(0.8), &Camera { up: X, ..eye.clone() }, &learned(tracer, samples, crop));
+        let mean = film.mean().x;
+        let squares: f64 = film.pixels.iter().map(|p| (p.x - mean) * (p.x - mean)).sum();
+        let n = crop.area() as f64;
+        agrees((mean, (squares / (n - 1.0) / n).sqrt()), 0.71306);
+    }
+}
+
+#[test]
+fn what_is_learned_before_a_picture_shows_neither_threads_nor_crops() {
+    let room = white_box(0.5);
+    let eye = camera(DVec3::new(0.5, 0.5, 0.98), DVec3::new(0.5, 0.4, 0.0), 60.0);
+    let of = |threads, crop| {
+        let settings = ResolvedSettings { threads: Some(threads), ..learned(TracerKind::Path, 2, crop) };
+        picture(&room, &eye, &settings)
+    };
+    let (wide, narrow) =
+        (Crop { x: 90, y: 40, width: 40, height: 40 }, Crop { x: 100, y: 50, width: 9, height: 7 });
+    let (one, three, part) = (of(1, wide), of(3, wide), of(2, narrow));
+    assert_eq!(one.pixels, three.pixels);
+    for (x, y) in (0..7).flat_map(|y| (0..9).map(move |x| (x, y))) {
+        assert_eq!(part.pixel(x, y), one.pixel(x + 10, y + 10));
     }
 }
 
