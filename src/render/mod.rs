@@ -42,7 +42,9 @@ pub fn tracer(
         TracerKind::Raycast => Box::new(whitted::Whitted::raycast(world, settings)),
         TracerKind::Whitted => Box::new(whitted::Whitted::new(world, settings)),
         TracerKind::Path => Box::new(path::Path::with_roulette(world, view, settings, watch)?),
-        TracerKind::MonteCarlo => Box::new(path::Path::branching(world, view, settings, watch)?),
+        TracerKind::MonteCarlo => {
+            Box::new(path::Path::with_roulette(world, view, settings, watch)?.branching())
+        }
         TracerKind::Irradiance => Box::new(path::Path::with_records(world, view, settings, watch)?),
         TracerKind::Photon => Box::new(path::Path::with_photons(world, settings, watch)?),
     })

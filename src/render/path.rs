@@ -166,14 +166,9 @@ impl Path {
         Some(Path { roulette, ..path })
     }
 
-    /// The same, with paths that branch once.
-    pub fn branching(
-        world: &World,
-        view: &View,
-        settings: &ResolvedSettings,
-        watch: Watch<'_>,
-    ) -> Option<Path> {
-        Some(Path { branches: BRANCHES, ..Path::with_roulette(world, view, settings, watch)? })
+    /// The same paths, each of which branches once.
+    pub fn branching(self) -> Path {
+        Path { branches: BRANCHES, ..self }
     }
 
     /// Paths that photons end. None where shooting them is called off.

@@ -130,9 +130,13 @@ fn camera_ray(picture: Picture<'_>, pixel: [u32; 2], sampler: &mut Sampler) -> O
         1 => DVec2::splat(0.5),
         _ => filter::place(picture.settings.filter, sampler.next_2d()),
     };
-    let view: &View = picture.view;
+    ray_through(picture.view, corner + within, sampler)
+}
+
+/// A ray through a place of the picture, from a place of the lens where there is one.
+pub(super) fn ray_through(view: &View, place: DVec2, sampler: &mut Sampler) -> Option<Ray> {
     let lens = if view.has_lens() { sampler.next_2d() } else { DVec2::ZERO };
-    view.ray(corner + within, lens)
+    view.ray(place, lens)
 }
 
 /// Counts a sample that was not finite, and finds out whose it was by asking again what the camera's ray meets.

@@ -7,7 +7,9 @@
 //! So paths end early in a room that many bounces light, and hardly ever under an open sky, whose pictures have little noise to hide theirs in.
 
 use super::{Path, Walk};
+use crate::math::colour::mean;
 use crate::render::camera::View;
+use crate::render::pixel::ray_through;
 use crate::render::sampler::Sampler;
 use crate::render::settings::ResolvedSettings;
 use crate::render::tiles::{Watch, on_threads};
@@ -19,8 +21,8 @@ use rayon::prelude::*;
 /// Numbers of segments that are told apart, from two on; the last stands for all that follow.
 const LENGTHS: usize = 5;
 
-/// A number for each kind of segment: by its number, and by whether it left what is smooth.
-type Kinds = [[f64; 2]; LENGTHS];
+/// A number for each kind of segment (see [`kind`]).
+type Kinds = [f64; 2 * LENGTHS];
 
 /// How often paths go on.
 #[derive(Clone, Copy, Debug)]
@@ -55,14 +57,15 @@ pub fn survival(carried: f64, segment: u32) -> f64 {
 
 impl Roulette {
     /// By the weight alone, from the fifth segment on.
-    pub const PLAIN: Roulette = Roulette {
-        factors: [[f64::INFINITY; 2], [f64::INFINITY; 2], [f64::INFINITY; 2], [1.0; 2], [1.0; 2]],
+    pub const PLAIN: Roulette = {
+        const ALL: f64 = f64::INFINITY;
+        Roulette { factors: [ALL, ALL, ALL, ALL, ALL, ALL, 1.0, 1.0, 1.0, 1.0] }
     };
 
     /// How often a path that carries so much goes on from its segment, from the second on. None where all do, whatever they carry.
     #[inline]
     pub fn survival(&self, carried: f64, segment: u32, is_smooth: bool) -> Option<f64> {
-        let factor = self.factors[length(segment)][usize::from(is_smooth)];
+        let factor = self.factors[kind(segment, is_smooth)];
         (factor < f64::INFINITY).then(|| survival(carried * factor, segment))
     }
 
@@ -91,20 +94,22 @@ impl Roulette {
     fn of(tallies: &[Tally]) -> Roulette {
         let mean = tallies.iter().map(|tally| tally.mean).sum::<f64>() / tallies.len() as f64;
         let mut all = Tally::default();
-        tallies.iter().for_each(|tally| all.add(tally, 1.0 / squared(tally.mean + mean)));
-        let factor = |brought: f64, took: f64| {
-            let square = brought / all.variance * (all.rays / took);
+        for tally in tallies {
+            let brightness = tally.mean + mean;
+            all.add(tally, 1.0 / (brightness * brightness));
+        }
+        let factor = |i: usize| {
+            let square = all.brought[i] / all.variance * (all.rays / all.took[i]);
             if square.is_nan() { FACTORS[0] } else { square.sqrt().clamp(FACTORS[0], FACTORS[1]) }
         };
-        let factors =
-            std::array::from_fn(|i| std::array::from_fn(|j| factor(all.brought[i][j], all.took[i][j])));
-        Roulette { factors }
+        Roulette { factors: std::array::from_fn(factor) }
     }
 }
 
-/// Where a number of segments stands among [`LENGTHS`].
-fn length(segment: u32) -> usize {
-    (segment.saturating_sub(2) as usize).min(LENGTHS - 1)
+/// Which kind a segment is of: by its number, from two on, and by whether it left what is smooth.
+fn kind(segment: u32, is_smooth: bool) -> usize {
+    let length = (segment.saturating_sub(2) as usize).min(LENGTHS - 1);
+    2 * length + usize::from(is_smooth)
 }
 
 /// What came of the samples of a pixel, or of many.
@@ -126,9 +131,19 @@ impl Tally {
     fn add(&mut self, other: &Tally, weight: f64) {
         self.variance += weight * other.variance;
         self.rays += other.rays;
-        for (i, j) in (0..LENGTHS).flat_map(|i| [(i, 0), (i, 1)]) {
-            self.brought[i][j] += weight * other.brought[i][j];
-            self.took[i][j] += other.took[i][j];
+        for i in 0..self.took.len() {
+            self.brought[i] += weight * other.brought[i];
+            self.took[i] += other.took[i];
+        }
+    }
+
+    /// Notes what a path brought and took in all, that had left a surface so. By its weight as it went on, and so whatever ended others there:
+    /// those that went on count for them.
+    fn note(&mut self, left: &Left, sum: Rgb, rays: u64) {
+        if left.weight > 0.0 {
+            self.brought[left.kind] += square(sum - left.sum) / left.weight;
+            // The ray that has been counted is yet to be cast.
+            self.took[left.kind] += left.weight * (rays - left.rays + 1) as f64;
         }
     }
 }
@@ -144,8 +159,7 @@ struct Lesson<'a> {
 
 /// A path when it had just left a surface.
 struct Left {
-    segment: u32,
-    is_smooth: bool,
+    kind: usize,
     weight: f64,
     sum: Rgb,
     rays: u64,
@@ -166,7 +180,7 @@ impl Lesson<'_> {
         let n = f64::from(SAMPLES);
         // Of the mean of n, half the square of the difference of two; of one, n times that; summed over 2 n.
         tally.variance = square(one - other) * n * n;
-        tally.mean = (one + other).element_sum() / 6.0;
+        tally.mean = mean(one + other) / 2.0;
         tally
     }
 
@@ -175,8 +189,7 @@ impl Lesson<'_> {
         let settings = self.settings;
         let mut sampler = Sampler::new(settings.seed, column, ROW, sample).of_kind(settings.sampler, SAMPLES);
         let within = sampler.next_2d();
-        let lens = if self.view.has_lens() { sampler.next_2d() } else { DVec2::ZERO };
-        let Some(ray) = self.view.ray(pixel + within, lens) else { return Rgb::ZERO };
+        let Some(ray) = ray_through(self.view, pixel + within, &mut sampler) else { return Rgb::ZERO };
         sampler.rays.camera += 1;
         let mut walk = Walk::from_camera(ray, &self.path.roulette, &mut sampler);
         let mut ways: Vec<Left> = Vec::new();
@@ -201,37 +214,15 @@ impl Lesson<'_> {
 
 impl Left {
     fn of(walk: &Walk<'_>) -> Left {
-        let weight = walk.weight.max_element();
-        Left {
-            segment: walk.segment,
-            is_smooth: walk.last.is_none(),
-            weight,
-            sum: walk.sum,
-            rays: walk.sampler.rays.total(),
-        }
+        let kind = kind(walk.segment, walk.last.is_none());
+        let (weight, rays) = (walk.weight.max_element(), walk.sampler.rays.total());
+        Left { kind, weight, sum: walk.sum, rays }
     }
-}
-
-impl Tally {
-    /// Notes what a path brought and took in all, that had left a surface so. By its weight as it went on, and so whatever ended others there:
-    /// those that went on count for them.
-    fn note(&mut self, left: &Left, sum: Rgb, rays: u64) {
-        let (i, j) = (length(left.segment), usize::from(left.is_smooth));
-        if left.weight > 0.0 {
-            self.brought[i][j] += square(sum - left.sum) / left.weight;
-            // The ray that has been counted is yet to be cast.
-            self.took[i][j] += left.weight * (rays - left.rays + 1) as f64;
-        }
-    }
-}
-
-fn squared(x: f64) -> f64 {
-    x * x
 }
 
 /// Mean of the colours' squares.
 fn square(c: Rgb) -> f64 {
-    (c * c).element_sum() / 3.0
+    mean(c * c)
 }
 
 #[cfg(test)]
@@ -242,27 +233,27 @@ mod tests {
     fn tally(rays: [f64; 2], before: f64, beyond: f64) -> Tally {
         let mut tally =
             Tally { mean: 1.0, variance: before + beyond, rays: rays[0] + rays[1], ..Tally::default() };
-        (tally.brought[0][0], tally.took[0][0]) = (beyond, rays[1]);
+        (tally.brought[0], tally.took[0]) = (beyond, rays[1]);
         tally
     }
 
     #[test]
     fn noise_times_rays_is_least() {
         let (rays, before, beyond) = ([30.0, 2.0], 1.0, 4.0);
-        let factor = Roulette::of(&[tally(rays, before, beyond)]).factors[0][0];
+        let factor = Roulette::of(&[tally(rays, before, beyond)]).factors[0];
         assert!((factor - (4.0 / 5.0 * 32.0 / 2.0f64).sqrt()).abs() < 1e-12, "{factor}");
     }
 
     #[test]
     fn paths_go_on_where_samples_are_so_even_that_ending_them_would_show() {
         let even = Tally { variance: 1e-9, ..tally([2.0, 8.0], 1.0, 4.0) };
-        assert_eq!(Roulette::of(&[even; 2]).factors[0][0], FACTORS[1]);
+        assert_eq!(Roulette::of(&[even; 2]).factors[0], FACTORS[1]);
     }
 
     #[test]
     fn what_was_never_found_is_ended_no_more_often_than_the_least_factor_says() {
         for tallies in [[Tally::default(); 2], [tally([2.0, 8.0], 1.0, 0.0); 2]] {
-            assert_eq!(Roulette::of(&tallies).factors, [[FACTORS[0]; 2]; LENGTHS]);
+            assert_eq!(Roulette::of(&tallies).factors, [FACTORS[0]; 2 * LENGTHS]);
         }
     }
 
