@@ -9,6 +9,9 @@ use crate::world::{Footprint, Ray, RayKind};
 use glam::{DVec2, DVec3};
 use std::f64::consts::{PI, TAU};
 
+/// Two numbers that name a point at the rim of the lens.
+pub const RIM: DVec2 = DVec2::X;
+
 /// A camera for a picture of a size.
 #[derive(Clone, Debug)]
 pub struct View {

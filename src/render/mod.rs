@@ -1,6 +1,7 @@
 //! Pictures: rays from a camera, radiance by a tracer, sums on a film, files on disk.
 
 use crate::scene::{Rgb, TracerKind};
+use crate::world::light::Ball;
 use crate::world::{Ray, World};
 
 /// A way to find the radiance that arrives along a ray. Made by its constructor from a world, so that what it must prepare
@@ -8,6 +9,18 @@ use crate::world::{Ray, World};
 pub trait Tracer: Sync {
     /// Radiance along a camera ray, linear RGB. Called once per camera sample. What the ray meets first is told to the sampler.
     fn radiance(&self, world: &World, ray: Ray, sampler: &mut sampler::Sampler) -> Rgb;
+
+    /// The part of it that what is seen emits by itself. [`Tracer::radiance`] leaves it out where the sampler says that it is found
+    /// [apart](sampler::Sampler::emission_apart).
+    fn emission(&self, _world: &World, _ray: Ray, _sampler: &mut sampler::Sampler) -> Rgb {
+        Rgb::ZERO
+    }
+
+    /// Balls around what emits so much that its emission is worth finding apart where its outline is seen. None where the tracer
+    /// does not tell it apart.
+    fn lamps(&self) -> &[Ball] {
+        &[]
+    }
 }
 
 pub mod adaptive;
@@ -19,6 +32,7 @@ pub mod film;
 mod filter;
 mod irradiance;
 mod medium;
+mod outline;
 pub mod output;
 pub mod passes;
 pub mod path;

@@ -18,13 +18,14 @@ use super::Tracer;
 use super::camera::View;
 use super::irradiance::Records;
 use super::medium::Inside;
+use super::outline;
 use super::photon::Maps;
 use super::sampler::Sampler;
 use super::settings::ResolvedSettings;
 use super::tiles::Watch;
 use crate::scene::Rgb;
 use crate::world::bsdf::{Bounce, Bsdf, Odds};
-use crate::world::light::{Choice, Lights};
+use crate::world::light::{Ball, Choice, Lights};
 use crate::world::texture::Sampled;
 use crate::world::{Hit, Ray, RayKind, SurfacePoint, World};
 pub(super) use gather::Matt;
@@ -47,6 +48,8 @@ pub struct Path {
     records: Option<Records>,
     /// True where a ray may meet what shines.
     has_shine: bool,
+    /// Around what is so bright that its outline asks for rays of its own.
+    lamps: Vec<Ball>,
     roulette: Roulette,
 }
 
@@ -150,6 +153,7 @@ impl Path {
             photons,
             records,
             has_shine,
+            lamps: outline::lamps(world, settings),
             roulette,
         }
     }
@@ -202,9 +206,38 @@ impl Tracer for Path {
         }
         walk.sum
     }
+
+    fn emission(&self, world: &World, ray: Ray, sampler: &mut Sampler) -> Rgb {
+        sampler.rays.camera += 1;
+        let mut walk = Walk::from_camera(ray, &self.roulette, sampler);
+        self.seen_emission(world, &mut walk).unwrap_or_else(|fault| {
+            walk.sampler.undefined = Some(fault);
+            Rgb::ZERO
+        })
+    }
+
+    fn lamps(&self) -> &[Ball] {
+        &self.lamps
+    }
 }
 
 impl Path {
+    /// What the surface at the end of a path's first segment sends out by itself.
+    fn seen_emission(&self, world: &World, walk: &mut Walk<'_>) -> Sampled<Rgb> {
+        while let Some(hit) = world.closest(&walk.ray) {
+            if hit.is_dark() {
+                break;
+            }
+            let mut bsdf = Bsdf::BARE;
+            bsdf.fill(world, &hit, &walk.ray)?;
+            walk.weight *= walk.inside.left(&bsdf, hit.t);
+            if !walk.slips(&hit, &bsdf) {
+                return Ok(walk.weight * bsdf.emitted(world, &hit));
+            }
+        }
+        Ok(Rgb::ZERO)
+    }
+
     /// Follows a path to its end.
     fn trace(&self, world: &World, walk: &mut Walk<'_>) -> Sampled<()> {
         while self.follow(world, walk)? {}
@@ -237,7 +270,7 @@ impl Path {
             return Ok(true);
         }
         let emitted = bsdf.emitted(world, hit);
-        if emitted != Rgb::ZERO && !walk.stage.is_covered() {
+        if emitted != Rgb::ZERO && !walk.stage.is_covered() && !walk.tells_no_emission() {
             walk.sum += walk.weight * emitted * self.share_of_meeting(world, hit, walk);
         }
         if walk.segment >= self.depth || !walk.arrives(bsdf) {
@@ -420,6 +453,11 @@ impl Walk<'_> {
     /// A path of its own from here on, of which nothing is summed yet.
     fn branch(&mut self) -> Walk<'_> {
         Walk { sum: Rgb::ZERO, sampler: &mut *self.sampler, ..*self }
+    }
+
+    /// True where what is met emits has been found by other rays.
+    fn tells_no_emission(&self) -> bool {
+        self.segment == 1 && self.sampler.emission_apart
     }
 
     fn note_length(&mut self, length: f64) {

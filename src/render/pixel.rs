@@ -6,8 +6,8 @@ use super::camera::View;
 use super::features::{FeatureSum, Layers};
 use super::film::{Fault, Film, PixelSum, Report};
 use super::filter;
+use super::outline;
 use super::sampler::Sampler;
-use super::settings::ResolvedSettings;
 use super::tiles::Picture;
 use crate::diag::Span;
 use crate::scene::Rgb;
@@ -25,6 +25,8 @@ pub struct Pixel {
     pub taken: u32,
     /// True where its estimated error is as small as asked for.
     pub enough: bool,
+    /// Whether it shows the outline of a lamp, once that has been asked.
+    has_outline: Option<bool>,
     undefined: Option<TextureFault>,
     /// What is kept beside radiance, where something is.
     pub features: Option<Box<FeatureSum>>,
@@ -35,7 +37,7 @@ impl Pixel {
     pub fn new(place: [u32; 2], kept: Layers) -> Pixel {
         let features = (!kept.is_empty()).then(Box::default);
         let sum = PixelSum::default();
-        Pixel { place, sum, taken: 0, enough: false, undefined: None, features }
+        Pixel { place, sum, taken: 0, enough: false, has_outline: None, undefined: None, features }
     }
 
     /// Takes the samples up to number `to`; false where that was cancelled.
@@ -46,7 +48,7 @@ impl Pixel {
         report: &mut Report,
         cancel: &AtomicBool,
     ) -> bool {
-        let mut sampler = self.sampler(picture.settings);
+        let mut sampler = self.sampler(picture, report);
         while self.taken < to {
             if cancel.load(Ordering::Relaxed) {
                 return false;
@@ -64,7 +66,7 @@ impl Pixel {
         report: &mut Report,
         cancel: &AtomicBool,
     ) -> bool {
-        let (mut blocks, mut sampler) = (Blocks::default(), self.sampler(picture.settings));
+        let (mut blocks, mut sampler) = (Blocks::default(), self.sampler(picture, report));
         while self.taken < picture.settings.samples {
             if cancel.load(Ordering::Relaxed) {
                 return false;
@@ -79,19 +81,23 @@ impl Pixel {
     }
 
     /// The numbers of the next sample.
-    fn sampler(&self, settings: &ResolvedSettings) -> Sampler {
-        let [x, y] = self.place;
-        let sampler =
+    fn sampler(&mut self, picture: Picture<'_>, report: &mut Report) -> Sampler {
+        let ([x, y], settings) = (self.place, picture.settings);
+        let crosses = || outline::crosses(picture, self.place, &mut report.rays);
+        let mut sampler =
             Sampler::new(settings.seed, x, y, self.taken).of_kind(settings.sampler, settings.samples);
+        sampler.emission_apart = *self.has_outline.get_or_insert_with(crosses);
         sampler.asking(settings.kept().look())
     }
 
     /// Takes the next sample by its numbers, and turns them to the one after it.
     fn take(&mut self, picture: Picture<'_>, sampler: &mut Sampler, report: &mut Report) -> Rgb {
         let ray = camera_ray(picture, self.place, sampler);
+        let emission =
+            if sampler.emission_apart { outline::emission(picture, self.place, sampler) } else { Rgb::ZERO };
         let radiance = match ray {
-            Some(ray) => picture.tracer.radiance(picture.world, ray, sampler),
-            None => Rgb::ZERO,
+            Some(ray) => emission + picture.tracer.radiance(picture.world, ray, sampler),
+            None => emission,
         };
         let radiance = match picture.settings.clamp {
             Some(most) => report.taken.clamped.at_most(most, radiance),
@@ -125,12 +131,16 @@ impl Pixel {
 
 /// The ray of a sample: through the pixel's centre for the only one, else through a point that its filter chooses.
 fn camera_ray(picture: Picture<'_>, pixel: [u32; 2], sampler: &mut Sampler) -> Option<Ray> {
-    let corner = DVec2::new(f64::from(pixel[0]), f64::from(pixel[1]));
     let within = match picture.settings.samples {
         1 => DVec2::splat(0.5),
         _ => filter::place(picture.settings.filter, sampler.next_2d()),
     };
-    ray_through(picture.view, corner + within, sampler)
+    ray_through(picture.view, corner(pixel) + within, sampler)
+}
+
+/// The pixel's top left corner.
+pub(super) fn corner([x, y]: [u32; 2]) -> DVec2 {
+    DVec2::new(f64::from(x), f64::from(y))
 }
 
 /// A ray through a place of the picture, from a place of the lens where there is one.

@@ -32,6 +32,8 @@ pub struct Sampler {
     pub undefined: Option<TextureFault>,
     /// What the camera's ray met first, where that is asked for.
     pub first: First,
+    /// True where the radiance that the camera sees a surface emit is found by other rays.
+    pub emission_apart: bool,
 }
 
 /// How many rays were cast, by what for.
@@ -47,6 +49,20 @@ pub struct RayCounts {
     pub refracted: u64,
     /// Sent on by a lobe with a width.
     pub scattered: u64,
+}
+
+/// Rows of numbers that no pixel of a picture has, of what is found beside its samples: added to the pixel's own row, or in its place.
+pub mod rows {
+    /// Whether a pixel shows the outline of a lamp.
+    pub const OUTLINE: u32 = 1 << 28;
+    /// What ends paths best.
+    pub const ROULETTE: u32 = 1 << 29;
+    /// Where records of irradiance stand.
+    pub const RECORD: u32 = 1 << 30;
+    /// What arrives there.
+    pub const GATHERING: u32 = 1 << 31;
+    /// Photons.
+    pub const PHOTONS: u32 = u32::MAX;
 }
 
 impl RayCounts {
@@ -80,6 +96,7 @@ impl Sampler {
             rays: RayCounts::default(),
             undefined: None,
             first: First::Unasked,
+            emission_apart: false,
         }
     }
 

@@ -1,10 +1,11 @@
 //! Balls around what a world holds, for light that is aimed at it. Knows nothing of lights.
 
-use super::World;
 use super::aggregate::{Aggregate, Group, INHERITED, Item, MeshAggregate};
+use super::query::is_hidden;
 use super::shape::Shape;
 use super::shape::ball::{ball_around, image};
 use super::shape::csg::{Leaf, Solid};
+use super::{RayKind, World};
 use crate::geometry::balls::Ball;
 use crate::math::Affine;
 use crate::scene::Material;
@@ -23,12 +24,13 @@ impl World {
         }
     }
 
-    /// Balls that hold between them every place of a wanted material that an indirect ray may meet: one of each shape, solid put
+    /// Balls that hold between them every place of a wanted material that a ray of a kind may meet: one of each shape, solid put
     /// together and mesh. None where one of them is infinite.
-    pub fn balls_of(&self, wanted: impl Fn(&Material) -> bool) -> Option<Vec<Ball>> {
+    pub fn balls_of(&self, kind: RayKind, wanted: impl Fn(&Material) -> bool) -> Option<Vec<Ball>> {
         let wanted: Vec<bool> = self.materials().map(wanted).collect();
         let holds = holding(&self.aggregates, &wanted);
-        let mut gathering = Gathering { aggregates: &self.aggregates, wanted, holds, balls: Vec::new() };
+        let mut gathering =
+            Gathering { aggregates: &self.aggregates, kind, wanted, holds, balls: Vec::new() };
         let all = Place { transform: Affine::IDENTITY, material: super::lower::DEFAULT_MATERIAL };
         match &self.aggregates[0] {
             Aggregate::Group(group) => gathering.group(group, &all)?,
@@ -74,6 +76,7 @@ fn part_is(wanted: &[bool], part: &Leaf) -> bool {
 
 struct Gathering<'a> {
     aggregates: &'a [Aggregate],
+    kind: RayKind,
     wanted: Vec<bool>,
     holds: Vec<bool>,
     balls: Vec<Ball>,
@@ -90,7 +93,7 @@ impl Gathering<'_> {
     fn group(&mut self, group: &Group, place: &Place) -> Option<()> {
         for (position, item) in group.items.iter().enumerate() {
             let number = group.number_of(position as u32) as usize;
-            if group.hide.get(number).is_some_and(|hide| hide.reflection) {
+            if group.hide.get(number).is_some_and(|hide| is_hidden(*hide, self.kind)) {
                 continue;
             }
             let own = group.material[number];

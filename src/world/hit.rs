@@ -75,6 +75,11 @@ impl Hit<'_> {
         &self.coat.material
     }
 
+    /// True where what is met surely emits nothing and hides what is behind it.
+    pub fn is_dark(&self) -> bool {
+        self.coat.is_dark()
+    }
+
     /// Surface parameters.
     pub fn uv(&self) -> DVec2 {
         self.uv.get()

@@ -165,7 +165,7 @@ impl<'w> Query<'w> {
 }
 
 /// Whether rays of a kind pass through.
-fn is_hidden(hide: Hide, kind: RayKind) -> bool {
+pub(super) fn is_hidden(hide: Hide, kind: RayKind) -> bool {
     match kind {
         RayKind::Camera => hide.camera,
         RayKind::Shadow => hide.shadow,

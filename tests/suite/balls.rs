@@ -66,7 +66,7 @@ fn jumble() -> World {
 #[test]
 fn every_place_of_glass_is_in_a_ball_and_plaster_is_not_asked_for() {
     let world = jumble();
-    let balls = world.balls_of(clear).expect("all are bounded");
+    let balls = world.balls_of(RayKind::Indirect, clear).expect("all are bounded");
     assert_eq!(balls.len(), 11, "one each");
     let (mut random, mut met) = (Random::new(5), [0; 11]);
     for _ in 0..40_000 {
@@ -85,7 +85,7 @@ fn every_place_of_glass_is_in_a_ball_and_plaster_is_not_asked_for() {
 #[test]
 fn balls_are_as_small_as_round_things_are() {
     let of = |shape| {
-        let balls = world(vec![object(shape, &glass(1.5))]).balls_of(clear).unwrap();
+        let balls = world(vec![object(shape, &glass(1.5))]).balls_of(RayKind::Indirect, clear).unwrap();
         assert_eq!(balls.len(), 1);
         balls[0].reach
     };
@@ -97,10 +97,12 @@ fn balls_are_as_small_as_round_things_are() {
 #[test]
 fn planes_have_no_ball_and_what_light_never_meets_needs_none() {
     let floor = |material| object(plane(Y, 0.0), &material);
-    assert!(world(vec![floor(glass(1.5))]).balls_of(clear).is_none());
-    assert!(world(vec![floor(diffuse(0.5))]).balls_of(clear).unwrap().is_empty());
+    assert!(world(vec![floor(glass(1.5))]).balls_of(RayKind::Indirect, clear).is_none());
+    assert!(world(vec![floor(diffuse(0.5))]).balls_of(RayKind::Indirect, clear).unwrap().is_empty());
     let mut unseen = Object::new(sphere(Y, 1.0), SPAN);
     unseen.material = Some(glass(1.5));
     unseen.hide.reflection = true;
-    assert!(world(vec![Node::Object(Arc::new(unseen))]).balls_of(clear).unwrap().is_empty());
+    let room = world(vec![Node::Object(Arc::new(unseen))]);
+    assert!(room.balls_of(RayKind::Indirect, clear).unwrap().is_empty());
+    assert_eq!(room.balls_of(RayKind::Camera, clear).unwrap().len(), 1, "a camera sees it");
 }

@@ -17,6 +17,7 @@ mod language;
 mod layers;
 mod meshes;
 mod models;
+mod outlines;
 mod paths;
 mod photons;
 mod pictures;

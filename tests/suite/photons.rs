@@ -172,8 +172,9 @@ fn received(world: &World, aim: &Aim, n: u32) -> [(f64, f64); 3] {
 }
 
 fn aimed(world: &World) -> Aim {
-    let balls =
-        world.balls_of(|material| material.layers.as_ref().is_some_and(|l| !l.transmit.is(Rgb::ZERO)));
+    let balls = world.balls_of(RayKind::Indirect, |material| {
+        material.layers.as_ref().is_some_and(|l| !l.transmit.is(Rgb::ZERO))
+    });
     Aim::At(Targets::new(balls.expect("all are bounded"), world.ball()))
 }
 

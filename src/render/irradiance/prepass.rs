@@ -7,7 +7,7 @@ use super::hemisphere::{Hemisphere, Seen};
 use super::record::Record;
 use crate::render::camera::View;
 use crate::render::path::{Matt, Path};
-use crate::render::sampler::Sampler;
+use crate::render::sampler::{Sampler, rows};
 use crate::render::settings::ResolvedSettings;
 use crate::render::tiles::Watch;
 use crate::scene::Rgb;
@@ -55,9 +55,6 @@ const FIRST_RAYS: u32 = 64;
 
 /// Records in pictures of few pixels.
 const FEW: usize = 1 << 10;
-
-/// Bits of the row of random numbers that no pixel has.
-const ROWS: [u32; 2] = [1 << 30, 1 << 31];
 
 /// Makes all records of a picture, each turn an equal part of the work. None where that is called off.
 pub fn fill(records: &mut Records, prepass: Prepass<'_>) -> Option<()> {
@@ -116,7 +113,7 @@ impl<'a> Prepass<'a> {
         let [x, y] = pixel;
         let centre = DVec2::new(f64::from(x), f64::from(y)) + 0.5;
         let ray = self.view.ray(centre, DVec2::ZERO)?;
-        let mut sampler = Sampler::new(self.settings.seed, x, y | ROWS[0], 0);
+        let mut sampler = Sampler::new(self.settings.seed, x, y | rows::RECORD, 0);
         // What a surface's function leaves undefined is said by the camera's rays.
         let matt = self.path.first_matt(self.world, ray, &mut sampler).ok()??;
         (!records.is_enough(self.world, &records.place_of(&matt))).then_some(Lack { pixel, matt })
@@ -148,7 +145,7 @@ impl<'a> Prepass<'a> {
         let [x, y] = lack.pixel;
         let (mut radiance, mut nearness, mut nearest) = (Rgb::ZERO, 0.0, f64::INFINITY);
         for ray in cell * rays..(cell + 1) * rays {
-            let mut sampler = Sampler::new(self.settings.seed, x, y | ROWS[1], ray);
+            let mut sampler = Sampler::new(self.settings.seed, x, y | rows::GATHERING, ray);
             let about = hemisphere.direction(cell, sampler.next_2d());
             let direction = to_frame(lack.matt.bsdf.normal, about);
             let gathered = self.path.gather(self.world, &lack.matt, direction, records, &mut sampler);

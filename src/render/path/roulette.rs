@@ -10,7 +10,7 @@ use super::{Path, Walk};
 use crate::math::colour::mean;
 use crate::render::camera::View;
 use crate::render::pixel::ray_through;
-use crate::render::sampler::Sampler;
+use crate::render::sampler::{Sampler, rows};
 use crate::render::settings::ResolvedSettings;
 use crate::render::tiles::{Watch, on_threads};
 use crate::scene::Rgb;
@@ -42,9 +42,6 @@ const FEWEST: usize = 64;
 
 /// Samples of a pixel, twice: what even samples differ by is known from two sets of them.
 const SAMPLES: u32 = 16;
-
-/// The bit of the row of random numbers that no pixel has, nor what others make before the picture.
-const ROW: u32 = 1 << 29;
 
 /// A path that loses nothing would go on for ever between perfect mirrors: after [`LONG`] segments one in 64 ends.
 const MOST_SURVIVAL: f64 = 1.0 - 1.0 / 64.0;
@@ -187,7 +184,8 @@ impl Lesson<'_> {
     /// The radiance of a sample of a pixel; what it tells is added. Nothing where it is not finite or a function was undefined, of which the picture tells.
     fn sample(&self, pixel: DVec2, [column, sample]: [u32; 2], tally: &mut Tally) -> Rgb {
         let settings = self.settings;
-        let mut sampler = Sampler::new(settings.seed, column, ROW, sample).of_kind(settings.sampler, SAMPLES);
+        let mut sampler =
+            Sampler::new(settings.seed, column, rows::ROULETTE, sample).of_kind(settings.sampler, SAMPLES);
         let within = sampler.next_2d();
         let Some(ray) = ray_through(self.view, pixel + within, &mut sampler) else { return Rgb::ZERO };
         sampler.rays.camera += 1;

@@ -20,7 +20,7 @@ use super::tiles::{Watch, on_threads};
 use crate::scene::{Material, Rgb, Texture};
 use crate::world::bsdf::Bsdf;
 use crate::world::light::{Aim, Ball, Choice, Lights, Targets};
-use crate::world::{Hit, World};
+use crate::world::{Hit, RayKind, World};
 use map::{Map, Photon, Query};
 use shoot::Shooting;
 
@@ -74,7 +74,7 @@ impl Maps {
             on_threads(settings.threads, || Map::new(photons()?, watch))
         };
         let global = map(0, choice, &Aim::Anything(ball))?;
-        let caustics = match world.balls_of(bends) {
+        let caustics = match world.balls_of(RayKind::Indirect, bends) {
             Some(balls) if balls.is_empty() => Map::default(),
             Some(balls) => {
                 let aim = Aim::At(Targets::new(balls, ball));

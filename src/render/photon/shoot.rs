@@ -4,7 +4,7 @@ use super::map::Photon;
 use crate::math::colour::mean;
 use crate::render::medium::Inside;
 use crate::render::path::survival;
-use crate::render::sampler::Sampler;
+use crate::render::sampler::{Sampler, rows};
 use crate::render::tiles::Watch;
 use crate::scene::Rgb;
 use crate::world::bsdf::Bsdf;
@@ -50,9 +50,6 @@ const BATCH: u32 = 1 << 14;
 /// Paths that a thread follows at a time.
 const CHUNK: u32 = 1 << 8;
 
-/// The row of random numbers that no pixel has.
-const NO_ROW: u32 = u32::MAX;
-
 /// Rays of which the power of lights is measured, and of each at most.
 const PROBES: [usize; 2] = [1 << 16, 1 << 10];
 
@@ -63,7 +60,7 @@ const PROBING: u32 = 2;
 pub fn choice(lights: &Lights, aim: &Aim, seed: u64) -> Choice {
     let n = (PROBES[0] / lights.lights.len().max(1)).clamp(1, PROBES[1]) as u32;
     let probe = |light: &Light, i: u32| {
-        let mut sampler = Sampler::new(seed, PROBING, NO_ROW, i);
+        let mut sampler = Sampler::new(seed, PROBING, rows::PHOTONS, i);
         let (side, place, way) = (sampler.next_2d(), sampler.next_2d(), sampler.next_2d());
         light.emit(place, way, side.y, aim).map_or(0.0, |emitted| mean(emitted.power))
     };
@@ -102,7 +99,7 @@ impl Shooting<'_> {
     }
 
     fn shoot(&self, path: u32, photons: &mut Vec<Photon>) -> Sampled<()> {
-        let mut sampler = Sampler::new(self.seed, u32::from(self.caustics), NO_ROW, path);
+        let mut sampler = Sampler::new(self.seed, u32::from(self.caustics), rows::PHOTONS, path);
         let (which, place, way) = (sampler.next_2d(), sampler.next_2d(), sampler.next_2d());
         let Some((i, often)) = self.choice.pick(which.x) else { return Ok(()) };
         let light = &self.lights.lights[i];

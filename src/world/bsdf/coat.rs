@@ -1,7 +1,7 @@
 //! A material made ready for rays: what is the same at every point of it is found once.
 
 use super::Bsdf;
-use crate::scene::{Layers, Material, Texture};
+use crate::scene::{Layers, Material, Rgb, Texture};
 use crate::world::texture::TexturePoint;
 use std::sync::Arc;
 
@@ -19,6 +19,11 @@ impl Coat {
     pub fn new(material: Arc<Material>) -> Coat {
         let same = is_same_everywhere(&material).then(|| constant(&material)).flatten();
         Coat { material, same }
+    }
+
+    /// True where it surely emits nothing and hides what is behind it.
+    pub fn is_dark(&self) -> bool {
+        self.same.as_ref().is_some_and(|same| same.emit == Rgb::ZERO && same.opacity == 1.0)
     }
 
     /// Whether a map turns the normal, for which the surface's tangent is needed.

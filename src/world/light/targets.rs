@@ -45,6 +45,11 @@ impl Targets {
         Targets { balls: kept.into_iter().next().unwrap_or_default(), world }
     }
 
+    /// Balls that hold all of them, few enough that each may be looked at for every pixel or path.
+    pub fn balls(&self) -> &[Ball] {
+        &self.balls
+    }
+
     /// True where there is nothing to aim at.
     pub fn is_empty(&self) -> bool {
         self.balls.is_empty()
