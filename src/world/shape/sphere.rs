@@ -25,12 +25,12 @@ const FAR: f64 = 16384.0;
 /// So do rays that pass within this share of the radius from grazing: the others lose six bits of the chord at worst.
 const GRAZING: f64 = 1.0 / 64.0;
 
-/// True where plain arithmetic already knows that a ray misses: so for most. `l` is its point nearest to the centre, as seen from there;
-/// 1/a in place of a division moves it, as against the full test, by less than 32 roundings of `reach`.
+/// True where plain arithmetic already knows that a ray misses: so for most. `al` is its point nearest to the centre, as seen from there,
+/// times a; that nothing was divided by a moves it, as against the full test, by less than 32 roundings of `reach`.
 #[inline(always)]
-fn passes_by(l: DVec3, radius: f64, reach: f64) -> bool {
-    let clear = radius + gamma(64) * (reach + radius);
-    l.length_squared() > clear * clear
+fn passes_by(al: DVec3, a: f64, radius: f64, reach: f64) -> bool {
+    let clear = a * (radius + gamma(64) * (reach + radius));
+    al.length_squared() > clear * clear
 }
 
 impl Sphere {
@@ -55,7 +55,7 @@ impl Sphere {
         let a = d.dot(d);
         let b = -f.dot(d);
         let reach = f.abs().max_element();
-        if passes_by(f + d * (b * (1.0 / a)), r, reach) {
+        if passes_by(f * a + d * b, a, r, reach) {
             return None;
         }
         let l = f + d * (b / a);
