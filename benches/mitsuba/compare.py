@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""Measures Ogee's `path` against Mitsuba 3 (`scalar_rgb`, `path`) on the same scenes, one thread each, in turn: CPU seconds,
+"""Measures Ogee's `path`, or another tracer, against Mitsuba 3 (`scalar_rgb`, `path`) on the same scenes, one thread each, in turn: CPU seconds,
 an EXR file written by each included, and the error of each sample count, and the seconds to one error. The error needs no
 reference: it is the spread of four pictures by other random numbers. Means of both are printed, so that a bias would be seen.
 
-usage: compare.py [--samples N,…] [--sampler sobol|independent] [--error E] [--ogee PATH]
+usage: compare.py [--samples N,…] [--tracer path|montecarlo|…] [--sampler sobol|independent] [--error E] [--only SCENE,…] [--ogee PATH]
 needs: `pip install mitsuba numpy`, and `cargo build --release`."""
 import argparse, math, os, resource, shutil, subprocess, tempfile, time
 import mitsuba as mi
@@ -114,7 +114,7 @@ def by_ogee(args, folder, name, samples, seed):
     out = os.path.join(folder, "out.exr")
     scene = shutil.copy(os.path.join(HERE, f"{name}.scene"), folder)
     command = [args.ogee, "render", scene, "-o", out, "--threads", "1", "--samples", str(samples)]
-    command += ["--seed", str(seed), "--sampler", args.sampler]
+    command += ["--seed", str(seed), "--sampler", args.sampler, "--tracer", args.tracer]
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
     subprocess.run(command, check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     after = resource.getrusage(resource.RUSAGE_CHILDREN)
@@ -135,8 +135,10 @@ def seconds_to(wanted, rows):
 def main():
     ask = argparse.ArgumentParser()
     ask.add_argument("--samples", default="4,16")
+    ask.add_argument("--tracer", default="path")
     ask.add_argument("--sampler", default="sobol")
     ask.add_argument("--error", type=float, default=0.05)
+    ask.add_argument("--only", default="cornell,glass,outdoors")
     ask.add_argument("--ogee", default=os.path.join(HERE, "..", "..", "target", "release", "ogee"))
     args = ask.parse_args()
     with tempfile.TemporaryDirectory() as folder:
@@ -145,8 +147,9 @@ def main():
 
 def compare(args, folder):
     print("| scene | samples | mitsuba cpu s | error | ogee cpu s | error | mean of ogee over mitsuba |\n|---|---|---|---|---|---|---|")
-    for name, described in scenes(folder).items():
-        scene, rows = mi.load_dict(described), {"mitsuba": [], "ogee": []}
+    described = scenes(folder)
+    for name in args.only.split(","):
+        scene, rows = mi.load_dict(described[name]), {"mitsuba": [], "ogee": []}
         for samples in map(int, args.samples.split(",")):
             made = {"mitsuba": [], "ogee": []}
             for seed in range(1, SEEDS + 1):
