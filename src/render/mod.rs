@@ -11,7 +11,7 @@ pub trait Tracer: Sync {
     fn radiance(&self, world: &World, ray: Ray, sampler: &mut sampler::Sampler) -> Rgb;
 
     /// The part of it that what is seen emits by itself. [`Tracer::radiance`] leaves it out where the sampler says that it is found
-    /// [apart](sampler::Sampler::emission_apart).
+    /// [by others](sampler::Sampler::emission_rays).
     fn emission(&self, _world: &World, _ray: Ray, _sampler: &mut sampler::Sampler) -> Rgb {
         Rgb::ZERO
     }

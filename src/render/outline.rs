@@ -23,8 +23,7 @@ const PROBES: u32 = 16;
 /// How many times as wide as a pixel these are spread: between the rays of a pixel alone an outline could slip through its corner.
 const SPREAD: f64 = 1.5;
 
-/// Rays of each sample for what is seen to emit. With so many, a lamp eight times as bright as white leaves no more noise at its edge than white paper
-/// does. They are about as many as ten paths take, in one pixel of a thousand.
+/// Rays of each sample for what is seen to emit, at the most: about as many as ten paths take, in one pixel of a thousand.
 const RAYS: u32 = 64;
 
 /// Radiance that is shown as white at an exposure of 0: an edge that differs by less is no worse than those of all that is lit.
@@ -44,10 +43,11 @@ fn white(settings: &ResolvedSettings) -> f64 {
     WHITE / exp2(settings.exposure)
 }
 
-/// Whether the outline of a lamp is seen in a pixel. The rays that ask are counted.
-pub fn crosses(picture: Picture<'_>, pixel: [u32; 2], counts: &mut RayCounts) -> bool {
+/// How many rays of each sample find what a pixel is seen to emit: none where no outline of a lamp is seen in it, else as many as leave no more noise
+/// than the edge of white paper has, up to [`RAYS`]; a power of two. The rays that ask are counted.
+pub fn rays(picture: Picture<'_>, pixel: [u32; 2], counts: &mut RayCounts) -> u32 {
     if !may_show(picture, pixel, picture.tracer.lamps()) {
-        return false;
+        return 0;
     }
     let [x, y] = pixel;
     let mut sampler = Sampler::new(picture.settings.seed, x, y | rows::OUTLINE, 0);
@@ -55,7 +55,9 @@ pub fn crosses(picture: Picture<'_>, pixel: [u32; 2], counts: &mut RayCounts) ->
     let probes = (0..PROBES).map(|i| rays.emission(i, SPREAD, &mut sampler).max_element());
     let [least, most] = probes.fold([f64::INFINITY, 0.0], |[least, most], x| [x.min(least), x.max(most)]);
     *counts += sampler.rays;
-    most - least > white(picture.settings)
+    let contrast = (most - least) / white(picture.settings);
+    // Of n rays the variance is the nth part of that of one.
+    if contrast > 1.0 { ((contrast * contrast) as u32).min(RAYS).next_power_of_two() } else { 0 }
 }
 
 fn may_show(picture: Picture<'_>, pixel: [u32; 2], lamps: &[Ball]) -> bool {
@@ -65,8 +67,9 @@ fn may_show(picture: Picture<'_>, pixel: [u32; 2], lamps: &[Ball]) -> bool {
 
 /// What is seen to emit in a pixel, at the next sample.
 pub fn emission(picture: Picture<'_>, pixel: [u32; 2], sampler: &mut Sampler) -> Rgb {
-    let rays = Rays::of(picture, pixel, RAYS, sampler);
-    (0..RAYS).map(|i| rays.emission(i, 1.0, sampler)).sum::<Rgb>() / f64::from(RAYS)
+    let n = sampler.emission_rays;
+    let rays = Rays::of(picture, pixel, n, sampler);
+    (0..n).map(|i| rays.emission(i, 1.0, sampler)).sum::<Rgb>() / f64::from(n)
 }
 
 /// Rays of one sample through a pixel, and through the lens where there is one.

@@ -457,7 +457,7 @@ impl Walk<'_> {
 
     /// True where what is met emits has been found by other rays.
     fn tells_no_emission(&self) -> bool {
-        self.segment == 1 && self.sampler.emission_apart
+        self.segment == 1 && self.sampler.emission_rays > 0
     }
 
     fn note_length(&mut self, length: f64) {

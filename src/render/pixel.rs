@@ -25,8 +25,8 @@ pub struct Pixel {
     pub taken: u32,
     /// True where its estimated error is as small as asked for.
     pub enough: bool,
-    /// Whether it shows the outline of a lamp, once that has been asked.
-    has_outline: Option<bool>,
+    /// How many rays of each sample find what is seen to emit, once that has been asked.
+    emission_rays: Option<u32>,
     undefined: Option<TextureFault>,
     /// What is kept beside radiance, where something is.
     pub features: Option<Box<FeatureSum>>,
@@ -37,7 +37,7 @@ impl Pixel {
     pub fn new(place: [u32; 2], kept: Layers) -> Pixel {
         let features = (!kept.is_empty()).then(Box::default);
         let sum = PixelSum::default();
-        Pixel { place, sum, taken: 0, enough: false, has_outline: None, undefined: None, features }
+        Pixel { place, sum, taken: 0, enough: false, emission_rays: None, undefined: None, features }
     }
 
     /// Takes the samples up to number `to`; false where that was cancelled.
@@ -83,18 +83,20 @@ impl Pixel {
     /// The numbers of the next sample.
     fn sampler(&mut self, picture: Picture<'_>, report: &mut Report) -> Sampler {
         let ([x, y], settings) = (self.place, picture.settings);
-        let crosses = || outline::crosses(picture, self.place, &mut report.rays);
+        let rays = || outline::rays(picture, self.place, &mut report.rays);
         let mut sampler =
             Sampler::new(settings.seed, x, y, self.taken).of_kind(settings.sampler, settings.samples);
-        sampler.emission_apart = *self.has_outline.get_or_insert_with(crosses);
+        sampler.emission_rays = *self.emission_rays.get_or_insert_with(rays);
         sampler.asking(settings.kept().look())
     }
 
     /// Takes the next sample by its numbers, and turns them to the one after it.
     fn take(&mut self, picture: Picture<'_>, sampler: &mut Sampler, report: &mut Report) -> Rgb {
         let ray = camera_ray(picture, self.place, sampler);
-        let emission =
-            if sampler.emission_apart { outline::emission(picture, self.place, sampler) } else { Rgb::ZERO };
+        let emission = match sampler.emission_rays {
+            0 => Rgb::ZERO,
+            _ => outline::emission(picture, self.place, sampler),
+        };
         let radiance = match ray {
             Some(ray) => emission + picture.tracer.radiance(picture.world, ray, sampler),
             None => emission,

@@ -32,8 +32,8 @@ pub struct Sampler {
     pub undefined: Option<TextureFault>,
     /// What the camera's ray met first, where that is asked for.
     pub first: First,
-    /// True where the radiance that the camera sees a surface emit is found by other rays.
-    pub emission_apart: bool,
+    /// How many other rays find the radiance that the camera sees a surface emit; none where its own ray does.
+    pub emission_rays: u32,
 }
 
 /// How many rays were cast, by what for.
@@ -96,7 +96,7 @@ impl Sampler {
             rays: RayCounts::default(),
             undefined: None,
             first: First::Unasked,
-            emission_apart: false,
+            emission_rays: 0,
         }
     }
 
