@@ -215,13 +215,19 @@ impl Development {
 
     #[inline]
     fn pixel_by(&self, table: &SrgbTable, radiance: Rgb) -> [u8; 3] {
-        let exposed = if self.exposure == 0.0 { radiance } else { radiance * exp2(self.exposure) };
+        /// More make any light white, and their factor would be no number: 2¹⁰²⁴.
+        const MOST_STOPS: f64 = 1000.0;
+        let stops = self.exposure.min(MOST_STOPS);
+        let exposed = if stops == 0.0 { radiance } else { radiance * exp2(stops) };
         let c = tone(self.tonemap, exposed);
         [table.encode(c.x), table.encode(c.y), table.encode(c.z)]
     }
 }
 
 fn tone(map: ToneMap, c: Rgb) -> Rgb {
+    /// What squared is still a number; a map has long come to its end there.
+    const LARGEST: f64 = 1e150;
+    let c = if c.max_element() > LARGEST { c.min(Rgb::splat(LARGEST)) } else { c };
     match map {
         ToneMap::None => c,
         ToneMap::Reinhard => c / (1.0 + luminance(c).max(0.0)),

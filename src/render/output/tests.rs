@@ -55,6 +55,14 @@ fn exposure_is_in_stops_and_tone_maps_stay_below_one() {
     for tonemap in [ToneMap::Reinhard, ToneMap::Aces] {
         let map = |x: f64| tone(tonemap, Rgb::splat(x)).x;
         assert!(map(0.0) == 0.0 && map(0.5) < map(2.0) && map(1e6) < 1.04);
+        assert!([1e150, 1e155, f64::MAX, f64::INFINITY].iter().all(|x| (0.999..1.04).contains(&map(*x))));
+    }
+    for tonemap in [ToneMap::None, ToneMap::Reinhard, ToneMap::Aces] {
+        for exposure in [600.0, 2000.0, f64::MAX] {
+            let bright = Development { exposure, tonemap };
+            assert_eq!(bright.pixel(Rgb::splat(0.09)), [255; 3], "{tonemap:?} {exposure}");
+            assert_eq!(bright.pixel(Rgb::ZERO), [0; 3], "{tonemap:?} {exposure}");
+        }
     }
     assert!((tone(ToneMap::Reinhard, Rgb::ONE).x - 0.5).abs() < 1e-15);
 }
