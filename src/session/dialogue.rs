@@ -22,7 +22,7 @@ use crate::scene::assets::Loader;
 use crate::syntax::ast;
 use crate::syntax::build::{ParseLimits, parse_expression, parse_file};
 use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::AtomicBool;
 
 /// Something that is said in answer to a line.
 #[derive(Clone, Debug, PartialEq)]
@@ -272,7 +272,7 @@ impl Dialogue<'_> {
         let tracer = &tracer;
         let mut means = Means { sources: self.sources, options, loader, tracer, cancel, stack };
         let done = evaluate(state, &mut means, &mut sink);
-        let interrupted = cancel.is_some_and(|asked| asked.load(Ordering::SeqCst));
+        let interrupted = means.is_cancelled();
         let failed = sink.has_errors() || interrupted || done.is_none();
         let said = match done {
             Some((names, ran)) if keeping == Keeping::Parts || (!failed && keeping == Keeping::Whole) => {

@@ -71,18 +71,20 @@ fn wrong(look: &Look<'_, '_>, message: impl Into<String>) -> Box<Diagnostic> {
 
 /// The range of a plot, or why it is none.
 fn range(look: &Look<'_, '_>, (from, to): (f64, f64)) -> Result<(f64, f64), Fault> {
-    if from < to && (to - from).is_finite() {
+    if from < to && from.is_finite() && to.is_finite() {
         return Ok((from, to));
     }
-    Err(wrong(
-        look,
-        format!("a range runs from a smaller to a larger number, and this one from {from} to {to}"),
-    ))
+    let wanted = if from < to { "between finite numbers" } else { "from a smaller to a larger number" };
+    Err(wrong(look, format!("a range runs {wanted}, and this one from {from:?} to {to:?}")))
 }
 
 /// So many parameters of a range, both ends among them.
 fn parameters((from, to): (f64, f64), n: usize) -> impl Iterator<Item = f64> {
-    let at = move |share: f64| if share == 1.0 { to } else { from + (to - from) * share };
+    let at = move |share: f64| match to - from {
+        _ if share == 1.0 => to,
+        width if width.is_finite() => from + width * share,
+        _ => from * (1.0 - share) + to * share,
+    };
     (0..n).map(move |i| at(i as f64 / (n - 1) as f64))
 }
 

@@ -15,7 +15,7 @@ use std::io::Read;
 use std::path::Path;
 use std::rc::Rc;
 use std::sync::Mutex;
-use std::sync::atomic::AtomicBool;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// What is evaluated.
 pub(super) enum Root<'a> {
@@ -47,6 +47,13 @@ pub(super) struct Means<'m> {
     pub tracer: &'m Tracer<'m>,
     pub cancel: Option<&'m AtomicBool>,
     pub stack: usize,
+}
+
+impl Means<'_> {
+    /// Whether somebody has asked for an end.
+    pub fn is_cancelled(&self) -> bool {
+        self.cancel.is_some_and(|asked| asked.load(Ordering::SeqCst))
+    }
 }
 
 /// `--set`, parsed.

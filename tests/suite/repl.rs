@@ -220,11 +220,30 @@ fn plots_go_to_files_as_svg_and_png() {
 }
 
 #[test]
+fn numbers_of_every_size_are_plotted() {
+    for (asked, told) in [
+        ("x => 1e308 * x", "1e308"),
+        ("x => x, -1.7e308, 1.7e308", "1e308"),
+        ("x => x, 0, 5e-324", "5e-324"),
+        ("x => <x, 1e308>, -1e308, 1e308", "1e308"),
+        ("x => x < 0 ? inf : x", "4"),
+        ("x => x, 1e15, 1e15 + 1", "+1e15"),
+    ] {
+        let run = repl(&format!(":plot {asked}\n")).expect(0);
+        assert!(run.out().contains(told) && run.out().lines().count() == 20, "{asked}: {}", run.out());
+        let inked = run.out().chars().filter(|c| ('\u{2801}'..='\u{28ff}').contains(c)).count();
+        assert!(inked > 100, "{asked}: {}", run.out());
+    }
+}
+
+#[test]
 fn what_cannot_be_plotted_is_told_at_its_place_and_changes_nothing() {
     for (asked, told) in [
         ("3", "a function or a curve can be plotted"),
         ("x => sin(x), 0", "a range is two numbers"),
         ("x => sin(x), 1, 0", "from a smaller to a larger"),
+        ("x => sin(x), 0, inf", "between finite numbers"),
+        ("x => inf", "none of its values here is finite"),
         ("x => sin(x) comb", "want a curve"),
         ("x => sqrt(-1 - x^2)", "<repl>:2:17"),
         ("x => nope", "`nope` is not defined"),

@@ -1,7 +1,7 @@
 //! The graph of a function of the language. Where it has no value the line is interrupted.
 
 use super::{Fault, Plane, SAMPLES, parameters, range, stroke, wrong};
-use crate::diag::Sink;
+use crate::diag::{Code, Sink};
 use crate::lang::builtins::components;
 use crate::lang::coerce::shown;
 use crate::lang::eval;
@@ -21,6 +21,8 @@ pub fn figure(look: &mut Look<'_, '_>, function: &Value, asked: (f64, f64)) -> R
     for &t in &ts {
         match point(look, function, t) {
             Ok(point) => points.push(point),
+            // What takes too long at one place may do so at all.
+            Err(fault) if fault.code == Code::LoopLimit || look.means.is_cancelled() => return Err(fault),
             Err(fault) => {
                 first_fault.get_or_insert(fault);
                 points.push(Vec::new());
@@ -29,6 +31,10 @@ pub fn figure(look: &mut Look<'_, '_>, function: &Value, asked: (f64, f64)) -> R
     }
     if let (Some(fault), true) = (first_fault, points.iter().all(Vec::is_empty)) {
         return Err(fault);
+    }
+    let is_finite = |point: &Vec<f64>| !point.is_empty() && point.iter().all(|x| x.is_finite());
+    if !points.iter().any(is_finite) {
+        return Err(wrong(look, "none of its values here is finite, and only finite ones can be drawn"));
     }
     let plane = Plane::of(&points);
     let seen = ts.iter().zip(&points).map(|(t, point)| match point.len() {
