@@ -208,19 +208,19 @@ impl Dialogue<'_> {
 
     /// The sort of an expression's value in words; evaluating it changes nothing.
     pub fn sort_of(&mut self, text: &str, first_line: usize) -> (Option<String>, Reply) {
-        self.look(text, first_line, |look| Some(sort_of(look.value, &look.state.known.program)))
+        self.look((text, text), first_line, |look| Some(sort_of(look.value, &look.state.known.program)))
     }
 
-    /// Evaluates an expression, looks at its value, and takes everything back.
+    /// Evaluates an expression, looks at its value, and takes everything back. The second text is what diagnostics show.
     pub(super) fn look<R>(
         &mut self,
-        text: &str,
+        text: (&str, &str),
         first_line: usize,
         look: impl FnOnce(&mut Look<'_, '_>) -> Option<R>,
     ) -> (Option<R>, Reply) {
         let mut seen = None;
         let reply = self.step(Keeping::Nothing, |state, means, sink| {
-            let expr = run::parse(means, LINES, text, first_line, sink)?;
+            let expr = run::parse_shown(means, LINES, text, first_line, sink)?;
             let span = expr.span;
             let file = state.reading(means, sink).root_tree(Path::new(""), span.source, one_placement(expr));
             let (names, mut ran) = answer(state, means, file, &run::Settings::new(), sink)?;

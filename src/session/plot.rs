@@ -9,7 +9,7 @@ mod request;
 pub use request::{Aids, Request};
 
 use super::dialogue::{Dialogue, Look, Reply};
-use crate::diag::{Code, Diagnostic};
+use crate::diag::{Code, Diagnostic, Span};
 use crate::lang::coerce::shown;
 use crate::lang::value::Value;
 use crate::plot::{Figure, Pen, Stroke};
@@ -21,7 +21,11 @@ const SAMPLES: usize = 720;
 impl Dialogue<'_> {
     /// The figure that is asked for; none where the reply says why. Changes nothing.
     pub fn plot(&mut self, request: &Request, first_line: usize) -> (Option<Figure>, Reply) {
-        let (figure, reply) = self.look(&request.expression, first_line, |look| {
+        let texts = (&*request.expression, &*request.line);
+        let (figure, reply) = self.look(texts, first_line, |look| {
+            // What was written, without the bracket around it.
+            let Span { start, end, .. } = look.span;
+            look.span = Span { start: start + 1, end: end.saturating_sub(1).max(start + 1), ..look.span };
             figure(look, request).map_err(|fault| look.sink.push(*fault)).ok()
         });
         (figure.filter(|_| !reply.failed), reply)
@@ -32,8 +36,10 @@ impl Dialogue<'_> {
 type Fault = Box<Diagnostic>;
 
 fn figure(look: &mut Look<'_, '_>, request: &Request) -> Result<Figure, Fault> {
-    let Value::List(list) = look.value else { unreachable!("a request is a list") };
-    let (value, further) = (&list[0], &list[1..]);
+    let list = if let Value::List(list) = look.value { &list[..] } else { std::slice::from_ref(look.value) };
+    let Some((value, further)) = list.split_first() else {
+        return Err(wrong(look, "there is nothing to plot: write `:plot x => sin(x), 0, 6.28`"));
+    };
     let numbers: Option<Vec<f64>> = further.iter().map(number).collect();
     let mut figure = match (value, numbers.as_deref()) {
         (Value::Material(material), Some([])) if request.lobe => lobe::figure(look, material, 45.0)?,

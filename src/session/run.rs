@@ -172,7 +172,18 @@ pub(super) fn parse(
     first_line: usize,
     sink: &mut Sink,
 ) -> Option<ast::Expr> {
-    let id = means.sources.add_from(format!("<{name}>"), text, first_line);
+    parse_shown(means, name, (text, text), first_line, sink)
+}
+
+/// The same of a text that diagnostics show as another one, whose bytes stand at the same offsets.
+pub(super) fn parse_shown(
+    means: &mut Means<'_>,
+    name: &str,
+    (text, shown): (&str, &str),
+    first_line: usize,
+    sink: &mut Sink,
+) -> Option<ast::Expr> {
+    let id = means.sources.add_from(format!("<{name}>"), shown, first_line);
     let limits = means.options.limits;
     if text.len() as u64 > limits.file {
         let message = format!("the {name} has {} bytes", text.len());

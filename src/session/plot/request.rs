@@ -16,6 +16,8 @@ pub struct Aids {
 pub struct Request {
     /// A list of what is plotted and the numbers behind it, with blanks before it so that its columns are those of the line.
     pub expression: String,
+    /// The line, for diagnostics: its bytes stand at the same offsets.
+    pub line: String,
     /// What a person wrote.
     pub title: String,
     /// The lobe of a material, not a curve.
@@ -50,10 +52,13 @@ impl Request {
         if written.trim().is_empty() {
             return Err("there is nothing to plot: write `:plot x => sin(x), 0, 6.28` or `:plot path`".into());
         }
-        // The bracket takes the place of the blank or letter before what was written.
-        let column = line[..before + rest.len() - written.trim_start().len()].chars().count();
-        let expression = format!("{}[{}]", " ".repeat(column.saturating_sub(1)), written.trim());
-        Ok(Request { expression, title, lobe: word.is_some(), aids })
+        // The bracket takes the place of the blank or letter before what was written. Where a bracket too many ends it, none is
+        // put around it, so that the fault is told of the one that was written.
+        let column = before + rest.len() - written.trim_start().len();
+        let n_of = |bracket: char| written.matches(bracket).count();
+        let (open, close) = if n_of(']') > n_of('[') { (" ", "") } else { ("[", "]") };
+        let expression = format!("{}{open}{}{close}", " ".repeat(column.saturating_sub(1)), written.trim());
+        Ok(Request { expression, line: format!("{} ", line.trim_end()), title, lobe: word.is_some(), aids })
     }
 }
 
@@ -73,6 +78,7 @@ mod tests {
         let lobe = parse(":plot brdf clay, 30");
         assert_eq!((lobe.lobe, lobe.expression.as_str()), (true, "          [clay, 30]"));
         assert_eq!(parse(":plot comb").title, "comb");
+        assert_eq!(parse(":plot x => x]").expression, "      x => x]");
     }
 
     #[test]
