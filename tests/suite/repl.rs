@@ -237,6 +237,17 @@ fn numbers_of_every_size_are_plotted() {
 }
 
 #[test]
+fn a_line_that_is_no_text_is_told_and_the_next_is_read() {
+    let run = Folder::new().sh(r"printf '1\n2 + \3773\n(4\n\300)\n5\n1 / 0\n' | $OGEE repl").expect(1);
+    assert_eq!(run.out(), "1\n5\n");
+    for told in
+        ["error[E0010]: line 2 is not UTF-8 text: what stands at column 5", "line 4 is not", "[<repl>:6:1]"]
+    {
+        assert!(run.stderr.contains(told), "{told}: {}", run.stderr);
+    }
+}
+
+#[test]
 fn what_cannot_be_plotted_is_told_at_its_place_and_changes_nothing() {
     for (asked, told) in [
         ("3", "a function or a curve can be plotted"),

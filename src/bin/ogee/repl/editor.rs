@@ -1,7 +1,7 @@
 //! Lines from a terminal: editing, history, and completion with Tab.
 
 use super::orders::{ORDERS, Order};
-use super::{Lines, Next, Talk, goes_on};
+use super::{Lines, Next, Talk, garbled, goes_on};
 use crate::speech::{Failure, tell};
 use ogee::lang::complete::{Visible, complete};
 use ogee::syntax::unfinished::End;
@@ -13,6 +13,7 @@ use rustyline::history::DefaultHistory;
 use rustyline::validate::{ValidationContext, ValidationResult, Validator};
 use rustyline::{CompletionType, Config, Context, Helper};
 use std::collections::BTreeSet;
+use std::io::ErrorKind;
 use std::path::PathBuf;
 
 /// So many lines of history are kept.
@@ -71,6 +72,10 @@ impl Lines for Editor {
             }
             Err(ReadlineError::Interrupted) => Ok(Next::Cancelled),
             Err(ReadlineError::Eof) => Ok(Next::End),
+            Err(ReadlineError::Io(error)) if error.kind() == ErrorKind::InvalidData => {
+                let message = "what was typed is not UTF-8 text, and the line is given up";
+                Ok(Next::Garbled(0, garbled(message.into())))
+            }
             Err(error) => Err(Failure::machine("cannot read the terminal", error)),
         }
     }

@@ -9,7 +9,8 @@ mod plot;
 use crate::args::Repl;
 use crate::interrupt::{self, CANCEL};
 use crate::reply::{Count, show_reply};
-use crate::speech::{Ended, Exit, Failure, tell};
+use crate::speech::{Ended, Exit, Failure, show_uncounted, tell};
+use ogee::diag::{Code, Diagnostic};
 use ogee::session::dialogue::{Dialogue, Reply};
 use ogee::syntax::unfinished::is_unfinished;
 use std::io::IsTerminal;
@@ -20,6 +21,8 @@ enum Next {
     Text(String),
     /// A line was given up.
     Cancelled,
+    /// So many lines of which the last is no text, and why.
+    Garbled(usize, Box<Diagnostic>),
     /// Nothing more.
     End,
 }
@@ -86,6 +89,11 @@ impl Talk<'_, '_> {
                     }
                 }
                 Next::Cancelled => {}
+                Next::Garbled(n_lines, why) => {
+                    self.n_lines += n_lines;
+                    self.failed = true;
+                    show_uncounted(&[*why], self.dialogue.sources());
+                }
                 Next::End => return Ok(()),
             }
         }
@@ -124,4 +132,9 @@ impl Talk<'_, '_> {
 /// Whether more lines belong to a text. An order is one line.
 fn goes_on(text: &str) -> bool {
     !text.trim_start().starts_with(':') && is_unfinished(text)
+}
+
+/// What is said of bytes that are no text.
+fn garbled(message: String) -> Box<Diagnostic> {
+    Box::new(Diagnostic::new(Code::NotUtf8, None, message))
 }
