@@ -247,6 +247,16 @@ fn a_line_that_is_no_text_is_told_and_the_next_is_read() {
     }
 }
 
+#[cfg(target_os = "linux")]
+#[test]
+fn a_figure_that_does_not_fit_the_disk_is_told_and_the_next_line_is_read() {
+    let folder = Folder::new();
+    std::fs::write(folder.path().join("lines"), ":plot sin --to a.svg\n2 + 3\n").unwrap();
+    let run = folder.sh("trap '' XFSZ; ulimit -f 1; $OGEE repl < lines").expect(1);
+    assert_eq!(run.out(), "5\n");
+    assert!(run.stderr.contains("cannot write a.svg"), "{}", run.stderr);
+}
+
 #[test]
 fn what_cannot_be_plotted_is_told_at_its_place_and_changes_nothing() {
     for (asked, told) in [

@@ -37,7 +37,11 @@ pub fn plot(talk: &mut Talk<'_, '_>, line: &str, at: usize, first_line: usize) -
     match (figure, place) {
         (None, _) => {}
         (Some(figure), None) => data(in_characters(&figure))?,
-        (Some(figure), Some((place, form))) => place.write(&form.bytes(&figure)?)?,
+        (Some(figure), Some((place, form))) => {
+            if let Err(failure) = form.bytes(&figure).and_then(|bytes| place.write(&bytes)) {
+                return Ok(refuse(talk, &failure.message));
+            }
+        }
     }
     Ok(Flow::On)
 }
