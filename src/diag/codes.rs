@@ -38,7 +38,7 @@ codes! {
     // 0: reading and parsing
     Syntax = "E0001", "the text is not a scene";
     Unclosed = "E0002", "a bracket or brace is not closed";
-    TooDeep = "E0003", "brackets are nested too deeply";
+    TooDeep = "E0003", "brackets or comments are nested too deeply";
     BadNumber = "E0004", "a number cannot be read";
     BadString = "E0005", "a text or its interpolation is malformed";
     ChainedComparison = "E0006", "comparisons do not chain";

@@ -18,6 +18,8 @@ pub(super) enum Event {
     OpenText { open: usize, at: usize, hole: Option<usize> },
     /// A block comment that nothing closes, nested `depth` deep where the text ends.
     OpenComment { open: usize, depth: usize },
+    /// A block comment from `open` to `end` that nests past [`COMMENT_DEPTH`] at `at`.
+    DeepComment { open: usize, at: usize, end: usize },
     /// A byte that no scene contains.
     Control { at: usize },
 }
@@ -170,6 +172,7 @@ impl<'t> Events<'t> {
 
     fn block_comment(&mut self, open: usize) -> Option<Event> {
         let mut depth = 1;
+        let mut too_deep = None;
         self.at = open + 2;
         while depth > 0 {
             match self.bytes.get(self.at..self.at + 2) {
@@ -179,11 +182,10 @@ impl<'t> Events<'t> {
                 }
                 Some(b"/*") => {
                     depth += 1;
-                    self.at += 2;
-                    if depth > COMMENT_DEPTH {
-                        self.at = self.bytes.len();
-                        return Some(Event::OpenComment { open, depth });
+                    if depth == COMMENT_DEPTH + 1 {
+                        too_deep.get_or_insert(self.at);
                     }
+                    self.at += 2;
                 }
                 Some(b"*/") => {
                     depth -= 1;
@@ -197,12 +199,12 @@ impl<'t> Events<'t> {
                 Some(_) => self.at += 1,
             }
         }
-        None
+        too_deep.map(|at| Event::DeepComment { open, at, end: self.at })
     }
 }
 
 /// Comments nest this deep at most: pest reads one by recursion, on a stack that it guards.
-const COMMENT_DEPTH: usize = 64;
+pub(super) const COMMENT_DEPTH: usize = 64;
 
 impl Iterator for Events<'_> {
     type Item = Event;
@@ -271,7 +273,10 @@ pub(super) fn outline(text: &str, limit: usize) -> Option<Vec<u32>> {
                     cuts.extend(item_on_next_line(bytes, at));
                 }
             }
-            Event::OpenText { .. } | Event::OpenComment { .. } | Event::Control { .. } => return None,
+            Event::OpenText { .. }
+            | Event::OpenComment { .. }
+            | Event::DeepComment { .. }
+            | Event::Control { .. } => return None,
         }
         if open.len() > limit {
             return None;

@@ -2,7 +2,7 @@
 //! in which they do. What is put in is remembered, so that places lead back to the person's own text and nothing is said
 //! twice.
 
-use super::outline::{Event, Events, closer};
+use super::outline::{COMMENT_DEPTH, Event, Events, closer};
 use super::too_deep;
 use crate::diag::{Code, Diagnostic, SourceId, Span};
 
@@ -105,6 +105,7 @@ impl Repair<'_> {
                     events.resume(go_on);
                 }
                 Event::OpenComment { open, depth } => self.comment(open, depth),
+                Event::DeepComment { open, at, end } => self.deep_comment(open, at, end),
                 Event::Control { at } => self.control(at),
             }
         }
@@ -169,6 +170,16 @@ impl Repair<'_> {
                 .hint("end it with `*/`; comments nest, so each `/*` needs its own"),
         );
         self.edits.push(Edit::Blank { at: open, len: self.text.len() - open });
+    }
+
+    fn deep_comment(&mut self, open: usize, at: usize, end: usize) {
+        let message = format!("comments nest more than {COMMENT_DEPTH} levels deep");
+        self.found.push(
+            Diagnostic::new(Code::TooDeep, self.span(at, at + 2), message)
+                .label("one comment too many begins in the others here")
+                .hint("comments nest: take out each `/*` that stands in one and is not meant, with its `*/`"),
+        );
+        self.edits.push(Edit::Blank { at: open, len: end - open });
     }
 
     fn control(&mut self, at: usize) {
