@@ -10,7 +10,7 @@ use crate::args::Render;
 use crate::interrupt;
 use crate::speech::{Ended, Exit, Failure, data, show, tell, tell_failure};
 use bar::Bar;
-use ogee::diag::Diagnostic;
+use ogee::diag::{Diagnostic, Severity};
 use ogee::render::film::Film;
 use ogee::render::output::Format;
 use ogee::render::passes::{self, Passes};
@@ -90,9 +90,14 @@ fn still(
     }
     Ok(match is_made(&film, &prepared.settings) {
         false => Exit::Interrupted,
-        true if !faults.is_empty() => Exit::Scene,
+        true if has_errors(&faults) => Exit::Scene,
         true => Exit::Done,
     })
+}
+
+/// Whether one of them is more than a warning.
+fn has_errors(diagnostics: &[Diagnostic]) -> bool {
+    diagnostics.iter().any(|d| d.severity == Severity::Error)
 }
 
 /// True where all of a picture is made that was asked for.

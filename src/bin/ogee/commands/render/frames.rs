@@ -117,7 +117,7 @@ impl Reel<'_, '_> {
             return Ok(Some(Exit::Interrupted));
         };
         let faults = picture::faults(&film);
-        self.total.faulty |= !faults.is_empty();
+        self.total.faulty |= super::has_errors(&faults);
         self.say(frame, faults);
         seconds.write.measure(|| self.keep(frame, &film, &prepared))?;
         self.count(frame, &film, &prepared, &seconds)?;
