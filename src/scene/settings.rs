@@ -37,6 +37,8 @@ pub struct RenderSettings {
     pub fps: Option<f64>,
     /// Where it was written.
     pub span: Option<Span>,
+    /// Where its `size` was.
+    pub size_span: Option<Span>,
 }
 
 impl RenderSettings {

@@ -146,6 +146,7 @@ fn render(settings: &RenderSettings) -> Entry {
         frames,
         fps,
         span,
+        size_span: _,
     } = settings;
     let given = [
         ("size", size.map(|s| json!(s))),

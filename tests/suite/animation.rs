@@ -113,6 +113,28 @@ fn a_gif_has_all_frames_at_their_times_and_is_the_default() {
 }
 
 #[test]
+fn a_frame_of_another_size_ends_the_file_of_all_and_keeps_those_before() {
+    let folder = Folder::with(&[("a.scene", &MOVING.replace("24, 16", "frame < 2 ? 24 : 30, 16"))]);
+    for file in ["a.gif", "a.apng"] {
+        let run = folder.ogee(&format!("render a.scene -o {file}")).expect(1);
+        assert!(run.stderr.contains("this frame is 30×16, and those before it are 24×16"), "{}", run.stderr);
+        assert!(run.stderr.contains("[a.scene:1:15]"), "at `size`: {}", run.stderr);
+        assert!(run.stderr.contains("-o 'a-{frame:04}.png'"), "{}", run.stderr);
+        assert!(run.stderr.contains(&format!("{file}  2 frames of 6")), "{}", run.stderr);
+        assert!(!folder.read(file).is_empty());
+    }
+    folder.ogee("render a.scene -o {frame}.png").expect(0);
+}
+
+#[test]
+fn frames_before_a_crop_that_no_longer_fits_are_kept() {
+    let folder = Folder::with(&[("a.scene", &MOVING.replace("24, 16", "frame < 2 ? 24 : 12, 16"))]);
+    let run = folder.ogee("render a.scene --crop 4,0,20,16").expect(2);
+    assert!(run.stderr.contains("a.gif  2 frames of 6"), "{}", run.stderr);
+    assert!(!folder.read("a.gif").is_empty());
+}
+
+#[test]
 fn an_apng_has_the_pixels_of_the_files_of_each_frame() {
     use image::AnimationDecoder;
     let folder = moving();

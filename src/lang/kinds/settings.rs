@@ -239,6 +239,7 @@ fn render(ctx: &mut dyn Context, block: Block) -> Outcome {
         frames: count("frames"),
         fps: block.number("fps"),
         span: Some(block.span),
+        size_span: block.has("size").then(|| block.place("size")),
     };
     Ok(Value::Render(Arc::new(settings)))
 }

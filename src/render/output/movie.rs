@@ -81,6 +81,11 @@ impl Movie {
         self.len() == 0
     }
 
+    /// Width and height of every frame; none where there is none yet.
+    pub fn size(&self) -> Option<[u32; 2]> {
+        (!self.is_empty()).then_some(self.size)
+    }
+
     /// Adds a frame. All must have the size of the first.
     pub fn push(&mut self, film: &Film, develop: &Development) -> Result<(), OutputError> {
         let size = [film.crop.width, film.crop.height];

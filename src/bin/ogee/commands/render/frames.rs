@@ -6,7 +6,7 @@ use super::{Bar, Seconds, prepare, render, stats};
 use crate::args::Render;
 use crate::interrupt::CANCEL;
 use crate::speech::{Ended, Exit, Failure, data, show, tell, tell_failure};
-use ogee::diag::{Diagnostic, Severity};
+use ogee::diag::{Code, Diagnostic, Severity, Span};
 use ogee::render::film::{Film, Taken};
 use ogee::render::output::Format;
 use ogee::render::output::movie::Movie;
@@ -46,13 +46,15 @@ pub fn run(
     };
     let ended = reel.all(&missing);
     reel.bar.end();
-    let exit = ended?;
+    // What was made is kept, however the rest ended.
     if let Into::Movie(movie) = &reel.into {
         let movie = locked(movie);
         reel.total.seconds.write.measure(|| save_movie(&movie, target.name.given()))?;
     }
-    tell(reel.total.line(&target.shown(), there, missing.len()));
-    Ok(exit)
+    if ended.is_ok() || reel.total.frames > 0 {
+        tell(reel.total.line(&target.shown(), there, missing.len()));
+    }
+    ended
 }
 
 /// Where frames go.
@@ -107,10 +109,15 @@ impl Reel<'_, '_> {
             self.bar.aside(|| evaluated.printed.iter().for_each(tell));
             self.printed.clone_from(&evaluated.printed);
         }
+        let size_span = evaluated.scene.render.size_span;
         let (prepared, diagnostics) =
             prepare(self.args, self.target, self.animation, evaluated, &mut seconds)?;
         self.say(frame, diagnostics);
         let Some(prepared) = prepared else { return Ok(Some(Exit::Scene)) };
+        if let Some(fault) = self.other_size(&prepared.settings, size_span) {
+            self.say(frame, vec![fault]);
+            return Ok(Some(Exit::Scene));
+        }
         let left = self.left_undone(frame);
         let film = seconds.render.measure(|| render(self.args, &prepared, &self.bar, left));
         let Some(film) = film.filter(|film| super::is_made(film, &prepared.settings)) else {
@@ -122,6 +129,20 @@ impl Reel<'_, '_> {
         seconds.write.measure(|| self.keep(frame, &film, &prepared))?;
         self.count(frame, &film, &prepared, &seconds)?;
         Ok(is_interrupted().then_some(Exit::Interrupted))
+    }
+
+    /// Why a frame does not go into one file with those before it.
+    fn other_size(&self, settings: &ResolvedSettings, at: Option<Span>) -> Option<Diagnostic> {
+        let Into::Movie(movie) = &self.into else { return None };
+        let [w, h] = [settings.crop.width, settings.crop.height];
+        let [w0, h0] = locked(movie).size().filter(|size| *size != [w, h])?;
+        let message = format!("this frame is {w}×{h}, and those before it are {w0}×{h0}");
+        let numbered = self.target.name.numbered_like("png");
+        Some(
+            Diagnostic::new(Code::BadProperty, at, message)
+                .label("the same for all frames of one file")
+                .hint(format!("give all frames one size, or each a file of its own: `-o '{numbered}'`")),
+        )
     }
 
     /// What is left to do where a ray does not come back.

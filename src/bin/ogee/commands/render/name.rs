@@ -56,10 +56,9 @@ impl Name {
         &self.given
     }
 
-    /// Such a name with a place for numbers, where it has none: `walk.png` with `walk-{frame:04}.png`.
-    pub fn numbered_like(&self) -> String {
+    /// Such a name with a place for numbers, where it has none: `walk.gif` with `walk-{frame:04}.png`.
+    pub fn numbered_like(&self, extension: &str) -> String {
         let stem = self.given.file_stem().map_or("frame".into(), |stem| stem.to_string_lossy());
-        let extension = self.given.extension().map_or("png".into(), |ext| ext.to_string_lossy());
         self.given.with_file_name(format!("{stem}-{{frame:04}}.{extension}")).display().to_string()
     }
 }
@@ -89,7 +88,10 @@ mod tests {
         assert_eq!(of("{frame:2}.png", 12345), "12345.png");
         assert_eq!(of("{other}.png", 3), "{other}.png");
         assert!(!Name::read(Path::new("walk.png")).unwrap().is_numbered());
-        assert_eq!(Name::read(Path::new("a/walk.png")).unwrap().numbered_like(), "a/walk-{frame:04}.png");
+        assert_eq!(
+            Name::read(Path::new("a/walk.png")).unwrap().numbered_like("png"),
+            "a/walk-{frame:04}.png"
+        );
     }
 
     #[test]

@@ -79,12 +79,16 @@ impl Target {
                  or `--time T` for one picture",
                 frames.len(),
                 self.shown(),
-                self.name.numbered_like(),
+                self.name.numbered_like(&self.extension()),
             )));
         }
         let name = Name::read(&default_output(&args.file, "gif")).map_err(Failure::usage)?;
         Place::try_at(name.given())?;
         Ok(Target { name, form: Form::Movie(MovieFormat::Gif), ..self })
+    }
+
+    fn extension(&self) -> String {
+        self.name.given().extension().map_or("png".into(), |ext| ext.to_string_lossy().into_owned())
     }
 
     /// For messages.
