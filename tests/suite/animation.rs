@@ -156,6 +156,7 @@ fn names_and_ranges_that_cannot_be_are_told_before_the_work_begins() {
     let folder = moving();
     for (line, words) in [
         ("-o {frame:xx}.png", "`{frame:xx}` is no place for a frame's number"),
+        ("-o {fraem}.png", "`{fraem}` is no place for a frame's number"),
         ("-o a.png", "6 frames do not go into one a.png\nwrite `-o a-{frame:04}.png`"),
         ("-o a.exr --frames 2..4", "2 frames do not go into one a.exr"),
         ("-o -", "6 frames do not go into one -"),

@@ -18,21 +18,29 @@ impl Name {
     pub fn read(path: &Path) -> Result<Name, String> {
         let given = path.to_owned();
         let Some(mut rest) = path.to_str() else { return Ok(Name { given, pieces: None }) };
-        let mut pieces = Vec::new();
-        while let Some(at) = rest.find("{frame") {
-            let (text, place) = rest.split_at(at);
-            let (place, after) = place.split_once('}').unwrap_or((place, ""));
-            let digits = digits(&place["{frame".len()..]).filter(|_| rest.contains('}'));
-            let Some(digits) = digits else {
-                let written = &rest[at..at + place.len() + usize::from(rest[at..].len() > place.len())];
-                return Err(format!(
-                    "`{written}` is no place for a frame's number: write `{{frame}}`, or `{{frame:04}}` for four digits"
-                ));
-            };
-            pieces.push((text.to_owned(), digits));
+        let (mut pieces, mut text) = (Vec::new(), String::new());
+        while let Some((before, place)) = rest.split_once('{') {
+            let (inside, after) = place.split_once('}').unwrap_or((place, ""));
+            let is_closed = place.contains('}');
+            text.push_str(before);
+            match inside.strip_prefix("frame").and_then(digits).filter(|_| is_closed) {
+                Some(digits) => pieces.push((std::mem::take(&mut text), digits)),
+                None if !inside.contains('{') && is_meant(inside) => {
+                    let written = format!("{{{inside}{}", if is_closed { "}" } else { "" });
+                    return Err(format!(
+                        "`{written}` is no place for a frame's number: write `{{frame}}`, or `{{frame:04}}` for four digits"
+                    ));
+                }
+                None => {
+                    text.push('{');
+                    rest = place;
+                    continue;
+                }
+            }
             rest = after;
         }
-        let pieces = (!pieces.is_empty()).then(|| (pieces, rest.to_owned()));
+        text.push_str(rest);
+        let pieces = (!pieces.is_empty()).then_some((pieces, text));
         Ok(Name { given, pieces })
     }
 
@@ -63,6 +71,13 @@ impl Name {
     }
 }
 
+/// Whether a person who wrote `{inside}` may mean the frame's number: by a word like `frame`, or a number of digits.
+fn is_meant(inside: &str) -> bool {
+    let (word, format) = inside.split_once(':').unwrap_or((inside, ""));
+    let like = word.starts_with("frame") || ogee::diag::nearest(&word.to_lowercase(), ["frame"]).is_some();
+    like || inside.is_empty() || digits(&inside[word.len()..]).is_some_and(|_| !format.is_empty())
+}
+
 /// How many digits `""`, `":4"` or `":04"` asks for.
 fn digits(format: &str) -> Option<usize> {
     if format.is_empty() {
@@ -87,6 +102,7 @@ mod tests {
         assert_eq!(of("a{frame}b{frame:3}.png", 5), "a5b005.png");
         assert_eq!(of("{frame:2}.png", 12345), "12345.png");
         assert_eq!(of("{other}.png", 3), "{other}.png");
+        assert_eq!(of("{a{frame}.png", 3), "{a3.png");
         assert!(!Name::read(Path::new("walk.png")).unwrap().is_numbered());
         assert_eq!(
             Name::read(Path::new("a/walk.png")).unwrap().numbered_like("png"),
@@ -102,6 +118,10 @@ mod tests {
             ("{frame:0}.png", "`{frame:0}`"),
             ("{frame:+4}.png", "`{frame:+4}`"),
             ("{frames}.png", "`{frames}`"),
+            ("{fraem}.png", "`{fraem}`"),
+            ("a{Frame:04}.png", "`{Frame:04}`"),
+            ("{i:04}.png", "`{i:04}`"),
+            ("{}.png", "`{}`"),
             ("a{frame:04.png", "`{frame:04.png`"),
             ("{frame:99999999999999999999999}.png", "`{frame:99999999999999999999999}`"),
         ] {
