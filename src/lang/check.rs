@@ -240,7 +240,7 @@ fn report_misfit(
                 format!("{what} is {}", coerce::not_finite_word(value)),
             )
             .label("every number of a property must be finite")
-            .hint("guard the expression that made it: a division by 0, or a function beyond its domain");
+            .hint("only `inf` makes infinities: give a number, or bound it, as in `min(r, 100)`");
             ctx.fail(said)
         }
         Misfit::Bounds { expected, hint } => {

@@ -463,8 +463,8 @@ impl Parameter {
 }
 
 /// How a builtin computes. Numeric ones are plain functions, so that loops and tapes call them without ceremony; on vectors
-/// they work component by component. A result that is not finite from finite arguments is an error of the call, which
-/// [`super::builtins::undefined`] words; [`super::builtins::call`] does all of it.
+/// they work component by component. A NaN is an error of the call, and so is an infinity from finite arguments;
+/// [`super::builtins::undefined`] words them, [`super::builtins::call`] does all of it.
 pub enum BuiltinBody {
     /// A number from a number.
     Number1(fn(f64) -> f64),

@@ -114,7 +114,7 @@ fn roots(ctx: &mut dyn Context, arguments: &Arguments<'_>) -> Outcome {
     }
     if coefficients.iter().all(|c| *c == 0.0) {
         let builtin = super::find("roots").expect("a function of the table");
-        return Err(ctx.fail(undefined(builtin, arguments)));
+        return Err(ctx.fail(undefined(builtin, arguments, &Value::Number(f64::NAN))));
     }
     let found = solve::roots_of_up_to::<COEFFICIENTS>(&coefficients[..n]);
     Ok(Value::list(found.iter().copied().map(Value::Number).collect()))

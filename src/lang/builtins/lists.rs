@@ -1,6 +1,6 @@
 //! Functions of lists.
 
-use super::{components, wrong_argument};
+use super::{components, is_finite, may_stand, undefined, wrong_argument};
 use crate::diag::{Code, Diagnostic, Span};
 use crate::lang::coerce;
 use crate::lang::members;
@@ -100,6 +100,21 @@ fn misfit(ctx: &mut dyn Context, arguments: &Arguments<'_>, name: &str, i: usize
     ctx.fail(wrong_argument(builtin, i, &arguments.values[i], arguments.spans[i]))
 }
 
+/// A number or vector that a function of lists made, where it may stand.
+fn sound(
+    ctx: &mut dyn Context,
+    arguments: &Arguments<'_>,
+    name: &str,
+    result: Value,
+    of_finite: bool,
+) -> Outcome {
+    if may_stand(&result, of_finite) {
+        return Ok(result);
+    }
+    let builtin = super::find(name).expect("a function of the table");
+    Err(ctx.fail(undefined(builtin, arguments, &result)))
+}
+
 /// Element i of a range.
 fn element(range: &RangeValue, i: usize) -> Value {
     Value::Number(range.start + i as f64 * range.step)
@@ -163,7 +178,8 @@ fn sum(ctx: &mut dyn Context, arguments: &Arguments<'_>) -> Outcome {
             _ => return Err(ctx.fail(not_summable(arguments.spans[0], value))),
         };
     }
-    Ok(total.map_or(Value::Number(0.0), |(sum, n)| vector(&sum[..n])))
+    let total = total.map_or(Value::Number(0.0), |(sum, n)| vector(&sum[..n]));
+    sound(ctx, arguments, "sum", total, elements.iter().all(is_finite))
 }
 
 fn not_summable(span: Span, value: &Value) -> Diagnostic {
@@ -315,10 +331,11 @@ fn linspace(ctx: &mut dyn Context, arguments: &Arguments<'_>) -> Outcome {
     }
     let n = n as usize;
     ctx.reserve(n, arguments.span)?;
+    let of_finite = arguments.values[..2].iter().all(is_finite);
     let at = |i: usize| {
         let t = if n > 1 { i as f64 / (n - 1) as f64 } else { 0.0 };
         let mixed: [f64; 4] = std::array::from_fn(|i| a[i] * (1.0 - t) + b[i] * t);
-        vector(&mixed[..size])
+        sound(ctx, arguments, "linspace", vector(&mixed[..size]), of_finite)
     };
-    Ok(Value::list((0..n).map(at).collect()))
+    Ok(Value::list((0..n).map(at).collect::<Outcome<_>>()?))
 }

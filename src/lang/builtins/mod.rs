@@ -15,7 +15,7 @@ mod tests;
 mod vectors;
 
 use super::coerce;
-use super::display::display;
+use super::display::{abbreviated, display};
 use super::table::{Arguments, Builtin, BuiltinBody, Context, Outcome, ShapeOf};
 use super::value::{Value, vector};
 use crate::diag::{Code, Diagnostic, Span};
@@ -143,10 +143,23 @@ pub fn call(ctx: &mut dyn Context, builtin: &'static Builtin, arguments: &Argume
         (BuiltinBody::Numbers(shape, f), _) => numbers(ctx, builtin, arguments, *shape, *f)?,
         (BuiltinBody::General(f), _) => return f(ctx, arguments),
     };
-    if is_finite(&result) || !arguments.values.iter().all(is_finite) {
-        Ok(result)
-    } else {
-        Err(ctx.fail(undefined(builtin, arguments)))
+    match may_stand(&result, arguments.values.iter().all(is_finite)) {
+        true => Ok(result),
+        false => Err(ctx.fail(undefined(builtin, arguments, &result))),
+    }
+}
+
+/// Whether a result may stand: a NaN never, an infinity where what it was made of is not all finite.
+fn may_stand(result: &Value, of_finite: bool) -> bool {
+    let component_may = |x: &f64| x.is_finite() || !(of_finite || x.is_nan());
+    components(result).is_none_or(|(c, n)| c[..n].iter().all(component_may))
+}
+
+/// The same of every element of a list.
+fn is_finite_throughout(value: &Value) -> bool {
+    match value {
+        Value::List(list) => list.iter().all(is_finite),
+        _ => is_finite(value),
     }
 }
 
@@ -249,6 +262,12 @@ fn wrong_shapes(builtin: &Builtin, arguments: &Arguments<'_>) -> Diagnostic {
 pub fn wrong_argument(builtin: &Builtin, i: usize, value: &Value, span: Span) -> Diagnostic {
     let parameter = builtin.parameters.get(i).or(builtin.parameters.last());
     let (name, takes) = parameter.map_or(("", "nothing"), |p| (p.name, p.takes));
+    if !is_finite(value) {
+        let message =
+            format!("`{}` takes finite numbers alone, and `{name}` is {}", builtin.name, display(value));
+        let said = Diagnostic::new(Code::NotFinite, span, message);
+        return said.hint("`inf` is there to compare with: give a number that is large enough");
+    }
     let said = Diagnostic::new(
         Code::TypeMismatch,
         span,
@@ -264,13 +283,29 @@ pub fn wrong_argument(builtin: &Builtin, i: usize, value: &Value, span: Span) ->
     }
 }
 
-/// What to say where a function has no finite value at finite arguments.
-pub fn undefined(builtin: &Builtin, arguments: &Arguments<'_>) -> Diagnostic {
-    let given: Vec<String> = arguments.values.iter().map(display).collect();
+/// About how many characters of an argument are shown.
+const ARGUMENT: usize = 48;
+
+/// What to say of a result that may not stand.
+pub fn undefined(builtin: &Builtin, arguments: &Arguments<'_>, result: &Value) -> Diagnostic {
+    let given: Vec<String> = arguments.values.iter().map(|value| abbreviated(value, ARGUMENT)).collect();
     let written = format!("{}({})", builtin.name, given.join(", "));
     let at = if arguments.spans.len() == 1 { arguments.spans[0] } else { arguments.span };
     let (domain, hint) = builtin.domain;
-    if domain.is_empty() {
+    let any = |value: &Value, is: fn(f64) -> bool| {
+        components(value).is_some_and(|(c, n)| c[..n].iter().any(|x| is(*x)))
+    };
+    let is_nan = any(result, f64::is_nan);
+    // Of a function of one number the domain says it all; of several, an infinite one is the likelier fault.
+    let is_one = matches!(builtin.body, BuiltinBody::Number1(_)) && !domain.is_empty();
+    if is_nan && !is_one && !arguments.values.iter().all(is_finite_throughout) {
+        return Diagnostic::new(Code::NotFinite, at, format!("`{written}` has no value"))
+            .label("not a number")
+            .hint("an argument is infinite; `inf` is for comparisons: guard it, as in `clamp(x, 0, 1)`");
+    }
+    // Where something vanishes an infinity is a pole, else it has grown too large.
+    let is_pole = arguments.values.iter().any(|value| any(value, |x| x == 0.0));
+    if domain.is_empty() || !(is_nan || is_pole) {
         return Diagnostic::new(Code::NotFinite, at, format!("`{written}` is beyond the range of numbers"))
             .hint("f64 ends near 1.8e308");
     }

@@ -77,6 +77,11 @@ fn what_is_undefined_is_an_error_with_a_hint() {
         assert_eq!(fault(name, &values).0, "E0208", "{name}");
     }
     assert_eq!(fault("exp", &[n(1000.0)]).0, "E0206");
+    assert_eq!(
+        fault("pow", &[n(2.0), n(1024.0)]),
+        ("E0206", "`pow(2, 1024)` is beyond the range of numbers".into())
+    );
+    assert_eq!(fault("sum", &[list(&[1e308, 1e308])]).0, "E0206");
     assert_eq!(fault("sin", &[Value::text("30")]).0, "E0201");
     assert_eq!(fault("cross", &[v(1.0, 0.0, 0.0), n(2.0)]).0, "E0201");
 }
@@ -85,6 +90,41 @@ fn what_is_undefined_is_an_error_with_a_hint() {
 fn infinity_may_be_compared_but_is_never_made() {
     assert_eq!(number("min", &[n(f64::INFINITY), n(3.0)]), 3.0);
     assert_eq!(number("abs", &[n(f64::NEG_INFINITY)]), f64::INFINITY);
+    assert_eq!(number("length", &[v(f64::INFINITY, 0.0, 0.0)]), f64::INFINITY);
+    assert_eq!(number("sum", &[list(&[f64::INFINITY, 1.0])]), f64::INFINITY);
+    assert_eq!(number("atan", &[n(f64::INFINITY)]), std::f64::consts::FRAC_PI_2);
+}
+
+#[test]
+fn no_function_gives_nan() {
+    let inf = f64::INFINITY;
+    for (name, values) in [
+        ("sin", vec![n(inf)]),
+        ("cos", vec![v(0.0, -inf, 0.0)]),
+        ("tan", vec![n(-inf)]),
+        ("mod", vec![n(inf), n(3.0)]),
+        ("mix", vec![n(inf), n(1.0), n(1.0)]),
+        ("smoothstep", vec![n(0.0), n(inf), n(inf)]),
+        ("normalize", vec![v(inf, 0.0, 0.0)]),
+        ("dot", vec![v(inf, 1.0, 0.0), v(0.0, 1.0, 1.0)]),
+        ("cross", vec![v(inf, 0.0, 0.0), v(inf, 0.0, 0.0)]),
+        ("distance", vec![v(inf, 0.0, 0.0), v(inf, 0.0, 0.0)]),
+        ("reflect", vec![v(inf, 0.0, 0.0), v(0.0, 1.0, 0.0)]),
+        ("rotate", vec![v(1.0, 0.0, 0.0), v(0.0, 1.0, 0.0), n(inf)]),
+        ("hsv", vec![n(inf), n(1.0), n(1.0)]),
+        ("noise", vec![n(inf)]),
+        ("luminance", vec![v(inf, -inf, 0.0)]),
+        ("sum", vec![list(&[inf, -inf])]),
+        ("linspace", vec![n(0.0), n(inf), n(3.0)]),
+    ] {
+        let (code, message) = fault(name, &values);
+        assert_eq!((code, message.ends_with("` has no value")), ("E0206", true), "{message}");
+    }
+    assert_eq!(fault("sqrt", &[n(-inf)]).0, "E0208");
+    assert_eq!(
+        fault("roots", &[n(1.0), n(inf)]),
+        ("E0206", "`roots` takes finite numbers alone, and `c0` is inf".into())
+    );
 }
 
 #[test]

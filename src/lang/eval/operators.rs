@@ -74,7 +74,7 @@ pub fn arithmetic(op: Arithmetic, a: &Value, b: &Value, span: Span) -> Result<Va
     if sound(&value) || (!is_nan(&value) && (infinite(a) || infinite(b))) {
         return Ok(value);
     }
-    Err(Box::new(no_value(op, a, b, span)))
+    Err(Box::new(no_value(op, (a, b), is_nan(&value), span)))
 }
 
 fn zip2(u: DVec2, v: DVec2, f: impl Fn(f64, f64) -> f64) -> DVec2 {
@@ -128,7 +128,7 @@ fn has_zero(value: &Value) -> bool {
 const OPERAND: usize = 48;
 
 /// What to say where a result is not finite.
-fn no_value(op: Arithmetic, a: &Value, b: &Value, span: Span) -> Diagnostic {
+fn no_value(op: Arithmetic, (a, b): (&Value, &Value), is_nan: bool, span: Span) -> Diagnostic {
     let written = format!("{} {} {}", abbreviated(a, OPERAND), op.text(), abbreviated(b, OPERAND));
     let divides = matches!(op, Arithmetic::Divide | Arithmetic::Remainder);
     if divides && has_zero(b) {
@@ -136,19 +136,27 @@ fn no_value(op: Arithmetic, a: &Value, b: &Value, span: Span) -> Diagnostic {
             .label("has no finite value")
             .hint("guard it: `d == 0 ? 0 : n / d`, or keep the divisor away from 0 with `max(d, 1e-9)`");
     }
+    if infinite(a) || infinite(b) {
+        return Diagnostic::new(Code::NotFinite, span, format!("`{written}` has no value"))
+            .label("not a number")
+            .hint("`inf` is there to compare with: keep it out of arithmetic, as with `min(x, 1e9)`");
+    }
     match op {
         Arithmetic::Power if has_zero(a) => {
             Diagnostic::new(Code::DivisionByZero, span, format!("`{written}` divides by 0"))
                 .label("a negative power of 0")
         }
-        Arithmetic::Power => Diagnostic::new(Code::Undefined, span, format!("`{written}` has no real value"))
-            .label("not a finite number")
-            .hint("a negative number has only whole powers; `abs(x)^p` is defined everywhere"),
+        Arithmetic::Power if is_nan => {
+            Diagnostic::new(Code::Undefined, span, format!("`{written}` has no real value"))
+                .label("not a finite number")
+                .hint("a negative number has only whole powers; `abs(x)^p` is defined everywhere")
+        }
         Arithmetic::Add
         | Arithmetic::Subtract
         | Arithmetic::Multiply
         | Arithmetic::Divide
-        | Arithmetic::Remainder => {
+        | Arithmetic::Remainder
+        | Arithmetic::Power => {
             Diagnostic::new(Code::NotFinite, span, format!("`{written}` has no finite value"))
                 .label("beyond the range of numbers")
                 .hint("f64 ends near 1.8e308; is an operand larger than it was meant to be?")
