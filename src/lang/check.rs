@@ -106,12 +106,24 @@ pub fn unknown_property(kind: &Kind, name: &str, span: Span) -> Diagnostic {
     if !said.hints.is_empty() {
         return said;
     }
+    let said = match &of_others(name)[..] {
+        [] => said,
+        others => said.hint(format!("`{name}` is a property of {}", coerce::listed(others, "and"))),
+    };
     let own: Vec<String> = kind.own.iter().map(|p| format!("`{}`", p.name)).collect();
     if own.is_empty() {
         said.hint(format!("`ogee docs {}` lists what it takes", kind.name))
     } else {
         said.hint(format!("it takes {}; see `ogee docs {}`", coerce::listed(&own, "and"), kind.name))
     }
+}
+
+/// The kinds that have a property of their own of this name, where they are few enough to tell anything.
+fn of_others(name: &str) -> Vec<String> {
+    const FEW: usize = 4;
+    let has = |kind: &&&Kind| kind.own.iter().any(|p| p.name == name);
+    let kinds: Vec<String> = super::kinds::ALL.iter().filter(has).map(|k| format!("`{}`", k.name)).collect();
+    if kinds.len() <= FEW { kinds } else { Vec::new() }
 }
 
 /// A property that takes many values also takes one list of them, and so does one that takes several, unless it takes a list.

@@ -9,6 +9,7 @@ use super::program::{
 use super::scope::{CaptureList, Declared, Owner};
 use super::{Place, Resolver, Signature};
 use crate::diag::{Code, Diagnostic, Span};
+use crate::lang::builtins;
 use crate::lang::table::Kind;
 use crate::syntax::ast;
 
@@ -115,8 +116,10 @@ impl<'a> Resolver<'a> {
         self.scopes.enter(owner, captures);
         self.scopes.open(Vec::new(), false);
         let mut resolved: Vec<Parameter> = Vec::with_capacity(parameters.len());
-        for parameter in parameters {
+        for (i, parameter) in parameters.iter().enumerate() {
+            let around = std::mem::replace(&mut self.to_come, &parameters[i..]);
             let default = parameter.default.as_ref().map(|e| self.expr(e));
+            self.to_come = around;
             if default.is_none() && resolved.last().is_some_and(|p| p.default.is_some()) {
                 self.report_default_before(parameter);
             }
@@ -253,6 +256,9 @@ impl<'a> Resolver<'a> {
             Place::Loose => super::words::is_property(&name.name),
             Place::Top => false,
         };
+        if let Some(said) = constant_assigned(name) {
+            return self.report(said);
+        }
         let said = Diagnostic::new(Code::UnknownName, name.span, format!("`{}` is not defined", name.name));
         let said = if is_property {
             said.hint(format!("a property is written without `=`: `{} …`", name.name))
@@ -394,11 +400,34 @@ impl<'a> Resolver<'a> {
             }));
         }
         let names: Vec<&str> = match place {
+            // What other blocks take is more likely meant so than a name that is not there.
+            Place::Block(kind)
+                if !(in_scope || self.unknown_names) && super::words::is_property(&name.name) =>
+            {
+                self.report(crate::lang::check::unknown_property(kind, &name.name, name.span));
+                return ItemKind::Poison(Some(self.word(&name.name)));
+            }
             Place::Block(kind) => kind.properties().map(|p| p.name).collect(),
             Place::Loose | Place::Top => Vec::new(),
         };
         ItemKind::Place(self.name(&name.name, name.span, &names))
     }
+}
+
+/// What to say where a name of the language itself is assigned.
+fn constant_assigned(name: &ast::Ident) -> Option<Diagnostic> {
+    let what = match &*name.name {
+        "time" | "frame" => "the moment of the animation",
+        constant if builtins::constant(constant).is_some() => "a constant",
+        function if builtins::find(function).is_some() => "a function of the language",
+        _ => return None,
+    };
+    let message = format!("`{}` is {what}, and cannot be assigned", name.name);
+    let said = Diagnostic::new(Code::NotAssignable, name.span, message).label("assigned here");
+    Some(said.hint(format!(
+        "a name of your own hides it: `let {0} = …`, or `var {0} = …` if it changes",
+        name.name
+    )))
 }
 
 /// The name that an expression begins with, and where.

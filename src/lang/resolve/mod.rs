@@ -59,6 +59,7 @@ pub fn resolve(
         exports: std::mem::take(&mut known.exports),
         included: std::mem::take(&mut known.included),
         unknown_names: false,
+        to_come: &[],
         at_root: true,
         used_settings: HashSet::new(),
     };
@@ -112,6 +113,8 @@ struct Resolver<'a> {
     included: Vec<FileId>,
     /// An import failed, so that any name may be one of its names.
     unknown_names: bool,
+    /// While a parameter's default is resolved, that parameter and those behind it.
+    to_come: &'a [ast::Parameter],
     /// The root's unit is being resolved, not one imported with `as`.
     at_root: bool,
     used_settings: HashSet<usize>,
@@ -245,6 +248,15 @@ impl<'a> Resolver<'a> {
     /// Says that a name means nothing here, unless a file is missing that may have defined it. A name that is nearly one of
     /// those here is a slip of the pen all the same.
     fn report_unknown(&mut self, name: &str, span: Span, words: &[&str]) {
+        if let Some(parameter) = self.to_come.iter().find(|p| *p.name.name == *name) {
+            let is_itself = std::ptr::eq(parameter, &self.to_come[0]);
+            let what = if is_itself { "the parameter of this default" } else { "a parameter behind it" };
+            let said = Diagnostic::new(Code::UsedBeforeSet, span, format!("`{name}` has no value yet here"))
+                .label("not given yet")
+                .also(parameter.name.span, what)
+                .hint("a default may use the parameters before its own");
+            return self.report(said);
+        }
         if let Some(later) = self.scopes.declared_later(name) {
             return self.report(
                 Diagnostic::new(Code::UsedBeforeSet, span, format!("`{name}` is used before it is defined"))
