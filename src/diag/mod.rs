@@ -114,8 +114,14 @@ impl Diagnostic {
 /// The name nearest to `word` by Damerau–Levenshtein distance, if it is nearer than a third of the longer of the two.
 /// Ties go to the first in alphabetical order, so that the hint does not depend on the order of a hash.
 pub fn nearest<'a>(word: &str, names: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
+    /// Names beyond so many bytes are nobody's slip, and the work grows with their square.
+    const LONGEST: usize = 256;
+    if word.len() > LONGEST {
+        return None;
+    }
     names
         .into_iter()
+        .filter(|name| name.len() <= LONGEST)
         .map(|name| (strsim::damerau_levenshtein(&word.to_lowercase(), &name.to_lowercase()), name))
         .filter(|(distance, name)| *distance <= (word.chars().count().max(name.chars().count()) / 3).max(1))
         .min()

@@ -57,10 +57,59 @@ fn harmless(text: &str) -> std::borrow::Cow<'_, str> {
     if text.contains(acts) { text.replace(acts, "\u{fffd}").into() } else { text.into() }
 }
 
+/// For people: words that nobody reads to their end lose their middle.
+fn shortened(diagnostic: &Diagnostic) -> Diagnostic {
+    let mut short = diagnostic.clone();
+    let of_labels = short.labels.iter_mut().map(|label| &mut label.text);
+    let texts = [&mut short.message, &mut short.label].into_iter().chain(of_labels).chain(&mut short.hints);
+    texts.chain(short.trace.iter_mut().map(|frame| &mut frame.text)).for_each(|text| {
+        if text.split_whitespace().any(|word| word.len() > LONGEST_WORD) {
+            *text = text.split_inclusive(char::is_whitespace).map(without_middle).collect();
+        }
+    });
+    short
+}
+
+/// Bytes of a word that is shown whole: any name or path that is meant to be read has fewer.
+const LONGEST_WORD: usize = 256;
+
+fn without_middle(word: &str) -> std::borrow::Cow<'_, str> {
+    const ENDS: [usize; 2] = [60, 20];
+    let n = word.chars().count();
+    if word.len() <= LONGEST_WORD || n <= ENDS[0] + ENDS[1] {
+        return word.into();
+    }
+    let start: String = word.chars().take(ENDS[0]).collect();
+    let end: String = word.chars().skip(n - ENDS[1]).collect();
+    format!("{start}…{end}").into()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::diag::{Code, SourceMap, Span};
+
+    #[test]
+    fn words_without_end_lose_their_middle() {
+        let name = "n".repeat(100_000);
+        let mut sources = SourceMap::default();
+        let file = sources.add("a.scene", format!("let a = {name}\n"));
+        let fault = Diagnostic::new(
+            Code::UnknownName,
+            Span::new(file, 8, 100_008),
+            format!("`{name}` is not defined"),
+        )
+        .label(format!("no `{name}`"))
+        .hint(format!("leave out `{name}`, or define it"));
+        for text in [human(&[fault.clone()], &sources, Style::plain(100)), short(&[fault.clone()], &sources)]
+        {
+            assert!(text.len() < 2500 && text.contains("nnn…nnn"), "{text}");
+            assert!(text.contains("is not defined"), "{text}");
+        }
+        let path = format!("/{}/a.obj", "folder/".repeat(20));
+        let whole = Diagnostic::new(Code::FileNotFound, None, format!("`{path}` cannot be read"));
+        assert!(short(&[whole], &sources).contains(&path));
+    }
 
     pub(super) fn sample() -> (SourceMap, Vec<Diagnostic>) {
         let mut sources = SourceMap::default();

@@ -1,7 +1,7 @@
 //! Diagnostics for people, drawn by miette from a report made by hand, with [`Excerpt`]s for its sources.
 
 use super::excerpt::Excerpt;
-use super::{Counts, Diagnostic, Severity, harmless, severity_word};
+use super::{Counts, Diagnostic, Severity, harmless, severity_word, shortened};
 use crate::diag::{Frame, Label, SourceMap, Span};
 use miette::{GraphicalReportHandler, GraphicalTheme, LabeledSpan, SourceCode, ThemeCharacters, ThemeStyles};
 use std::fmt::{self, Write as _};
@@ -37,8 +37,8 @@ impl Style {
 /// The first diagnostics in the order given, each with its excerpt, hints and trace, and how many more there are.
 pub fn human(diagnostics: &[Diagnostic], sources: &SourceMap, style: Style) -> String {
     let mut text = String::new();
-    for diagnostic in most_telling(diagnostics) {
-        let report = Report::new(diagnostic, sources, style.width());
+    for diagnostic in most_telling(diagnostics).into_iter().map(shortened) {
+        let report = Report::new(&diagnostic, sources, style.width());
         for part in std::iter::once(&report).chain(&report.elsewhere) {
             let drawn = handler(part, style).render_report(&mut text, part);
             drawn.expect("excerpts give every label's text, and a string takes it");
