@@ -80,7 +80,7 @@ codes! {
     UserError = "E0402", "the scene calls `error`";
     CallDepth = "E0403", "calls are nested too deeply";
     LoopLimit = "E0404", "a loop runs too long";
-    ListLimit = "E0405", "a list grows too long";
+    ListLimit = "E0405", "a list or text grows too long";
     MemoryLimit = "E0406", "the scene needs too much memory";
     ImportCycle = "E0407", "files import each other in a circle";
     ReturnOutside = "E0408", "`return` stands outside a function";

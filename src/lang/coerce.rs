@@ -195,8 +195,15 @@ fn integer(x: f64, min: i64) -> Result<Value, Misfit> {
     if x.floor() == x && x >= min as f64 && x.abs() <= LARGEST_INTEGER {
         return Ok(Value::Number(x));
     }
-    let expected = format!("a whole number of at least {min}");
-    let hint = if x.floor() != x && x > min as f64 {
+    let is_too_large = x > LARGEST_INTEGER;
+    let expected = if is_too_large {
+        format!("a whole number of at most {LARGEST_INTEGER}")
+    } else {
+        format!("a whole number of at least {min}")
+    };
+    let hint = if is_too_large {
+        "beyond it f64 no longer tells each whole number from the next".into()
+    } else if x.floor() != x && x > min as f64 {
         format!("try `floor` or {}", x.round())
     } else {
         String::new()

@@ -210,6 +210,16 @@ fn endless_recursion_is_an_error_and_deep_recursion_is_not() {
     assert_eq!(told(&evaluate(deep)), "");
 }
 
+#[test]
+fn a_text_that_grows_too_long_is_not_said_to_be_a_list() {
+    let limits = Limits { list: 1000, ..Limits::default() };
+    let found = limited("var s = \"ab\"\nwhile true { s = \"{s}{s}\" }\n", limits).diagnostics;
+    assert_eq!(codes(&found), ["E0405"]);
+    assert!(found[0].message.starts_with("a text grows to about "), "{}", found[0].message);
+    let found = limited("let l = [i for i in 0..2000]\n", limits).diagnostics;
+    assert!(found[0].message.starts_with("a list grows to "), "{}", found[0].message);
+}
+
 /// On the way back from the deepest call, the other branches are not gone down again: that took all turns of the guard.
 #[test]
 fn endless_recursion_with_two_branches_is_told_at_once() {

@@ -61,6 +61,7 @@ impl Place {
 fn cannot_write(path: &Path, error: &std::io::Error) -> Failure {
     let folder = folder_of(path);
     let why = match error.kind() {
+        ErrorKind::NotFound if folder.is_dir() => format!("no file can be made in {}", folder.display()),
         ErrorKind::NotFound => format!("there is no folder {}", folder.display()),
         _ => reason(error),
     };
@@ -133,6 +134,13 @@ mod tests {
         let failure = Place::try_at(Path::new("/no/such/folder/a.png")).err().unwrap();
         assert_eq!(failure.exit, crate::speech::Exit::Machine);
         assert!(failure.message.contains("there is no folder /no/such/folder"), "{}", failure.message);
+    }
+
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn a_folder_that_takes_no_files_is_not_said_to_be_missing() {
+        let failure = Place::try_at(Path::new("/proc/a.png")).err().unwrap();
+        assert!(failure.message.ends_with("no file can be made in /proc"), "{}", failure.message);
     }
 
     #[cfg(unix)]

@@ -252,7 +252,7 @@ impl<'p> Evaluator<'p> {
                     Ok(value) => {
                         self.check_shown(&value, span)?;
                         text.push_str(&display::interpolated(&value));
-                        self.reserve_list(text.len() / size_of::<Value>(), span)?;
+                        self.reserve_text(text.len(), span)?;
                     }
                     Err(reported) => outcome = Err(reported),
                 },

@@ -169,8 +169,20 @@ impl Evaluator<'_> {
     pub(super) fn check_shown(&mut self, value: &Value, span: Span) -> Outcome<()> {
         let Value::List(_) = value else { return Ok(()) };
         let pieces = display::pieces(value);
-        self.reserve_list(pieces, span)?;
+        self.reserve_text(pieces.saturating_mul(size_of::<Value>()), span)?;
         self.turns(pieces, span)
+    }
+
+    /// Counts a text of so many bytes that is about to be made: it may take as much as the longest list.
+    pub(super) fn reserve_text(&mut self, bytes: usize, span: Span) -> Outcome<()> {
+        let elements = bytes / size_of::<Value>();
+        let limit = self.run.limits.list;
+        if elements > limit {
+            let message =
+                format!("a text grows to about {bytes} bytes, as much as a list of {elements} elements");
+            return Err(self.fail(exceeded(Code::ListLimit, span, message, "list", limit as u64)));
+        }
+        self.check_memory(bytes as u64, span)
     }
 
     /// Counts the elements of a list that is about to be made, or to grow to this length.

@@ -114,8 +114,10 @@ fn short_of(asked: &Asked, skeleton: &Skeleton, found: &Solution) -> Vec<Diagnos
     let one = |(goal, span): &(Goal, Span)| {
         let (distance, turn) = distances(skeleton, &placement, goal);
         let name = &skeleton.tips()[goal.tip].name;
-        let stops =
-            (distance > tolerance).then(|| format!("stops {} short of its target", number_to(distance, 4)));
+        let stops = (distance > tolerance).then(|| match distance.is_finite() {
+            true => format!("stops {} short of its target", number_to(distance, 4)),
+            false => "stops short of its target, further than numbers go".into(),
+        });
         let points = (turn > tolerance).then(|| format!("points {}° off", number_to(turn.to_degrees(), 4)));
         let parts: Vec<String> = stops.into_iter().chain(points).collect();
         let message = format!("`{name}` {}", listed(&parts, "and"));
