@@ -7,6 +7,7 @@ use super::hemisphere::{Hemisphere, Seen};
 use super::record::Record;
 use crate::render::camera::View;
 use crate::render::path::{Matt, Path};
+use crate::render::pixel::corner;
 use crate::render::sampler::{Sampler, rows};
 use crate::render::settings::ResolvedSettings;
 use crate::render::tiles::Watch;
@@ -111,8 +112,7 @@ impl<'a> Prepass<'a> {
     fn lack(&self, records: &Records, pixel: [u32; 2]) -> Option<Lack<'a>> {
         self.watch.go_on()?;
         let [x, y] = pixel;
-        let centre = DVec2::new(f64::from(x), f64::from(y)) + 0.5;
-        let ray = self.view.ray(centre, DVec2::ZERO)?;
+        let ray = self.view.ray(corner(pixel) + 0.5, DVec2::ZERO)?;
         let mut sampler = Sampler::new(self.settings.seed, x, y | rows::RECORD, 0);
         // What a surface's function leaves undefined is said by the camera's rays.
         let matt = self.path.first_matt(self.world, ray, &mut sampler).ok()??;
