@@ -21,6 +21,7 @@ use crate::diag::{Code, Diagnostic, Sink, Span};
 use crate::math::Affine;
 use crate::scene::assets::AssetCache;
 use crate::scene::{Accelerator, Hide, Light, LightSource, Material, Node, Object, Rgb, Shape, Texture};
+use lights::Found;
 use meshes::Meshes;
 use models::Models;
 use skins::Skins;
@@ -46,11 +47,9 @@ pub(super) fn lower(
 ) -> (World, Vec<Diagnostic>) {
     let (aggregates, materials, mut sink) = lowered(nodes, options, assets, kept);
     sink.extend(super::texture::load_pictures(materials.iter().map(|m| &**m), assets));
-    let (lights, emitters) = lights::gather(&aggregates, &materials, &mut sink);
-    sink.extend(super::texture::load_skies(lights.iter().map(|placed| &*placed.light), assets));
-    let reused = kept.reused();
-    let coats = materials.into_iter().map(Coat::new).collect();
-    (settled(World { lights, emitters, aggregates, coats, reused }), sink.into_sorted())
+    let found = lights::gather(&aggregates, &materials, &mut sink);
+    sink.extend(super::texture::load_skies(found.lights.iter().map(|placed| &*placed.light), assets));
+    (settled(found, aggregates, materials, kept), sink.into_sorted())
 }
 
 /// See [`World::of_shapes`].
@@ -60,13 +59,13 @@ pub(super) fn lower_shapes(
     kept: &mut Kept,
 ) -> (World, Vec<Diagnostic>) {
     let (aggregates, materials, sink) = lowered(nodes, &WorldOptions::default(), assets, kept);
-    let (lights, emitters) = (Vec::new(), Vec::new());
-    let reused = kept.reused();
-    let coats = materials.into_iter().map(Coat::new).collect();
-    (settled(World { lights, emitters, aggregates, coats, reused }), sink.into_sorted())
+    (settled(Found::default(), aggregates, materials, kept), sink.into_sorted())
 }
 
-fn settled(mut world: World) -> World {
+fn settled(found: Found, aggregates: Vec<Aggregate>, materials: Vec<Arc<Material>>, kept: &Kept) -> World {
+    let Found { lights, emitters, glows_unasked } = found;
+    let coats = materials.into_iter().map(Coat::new).collect();
+    let mut world = World { lights, emitters, glows_unasked, aggregates, coats, reused: kept.reused() };
     for aggregate in &mut world.aggregates {
         if let Aggregate::Group(group) = aggregate {
             group.settle();

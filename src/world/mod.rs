@@ -120,6 +120,9 @@ pub struct World {
     pub lights: Vec<PlacedLight>,
     /// Surfaces that emit: the objects of area lights, and objects whose material has `emit`.
     pub emitters: Vec<Emitter>,
+    /// True where something glows that is not among these: a plane, a curved surface that rays meet directly, solids put together. Light of
+    /// it is found only by who meets it.
+    pub glows_unasked: bool,
     /// The first is the scene itself, the others are what is placed in it.
     aggregates: Vec<Aggregate>,
     coats: Vec<Coat>,
@@ -201,6 +204,16 @@ impl World {
     /// Whether a primitive that emits does so from both sides: one of a closed solid.
     pub fn emits_inward(&self, primitive: PrimitiveId) -> bool {
         self.emitter_of(primitive).is_some_and(|i| light::emits_inward(&self.emitters[i].shape))
+    }
+
+    /// Whether something is hidden from rays of shadows, or from those that are reflected and let through: then the two may find different
+    /// things on the same way.
+    pub fn hides_from_light(&self) -> bool {
+        let groups = self.aggregates.iter().filter_map(|aggregate| match aggregate {
+            Aggregate::Group(group) => Some(group),
+            Aggregate::Mesh(_) => None,
+        });
+        groups.flat_map(|group| &group.hide).any(|hide| hide.shadow || hide.reflection)
     }
 
     /// The box around all bounded shapes; empty for none.

@@ -123,7 +123,7 @@ mod tests {
 
     fn point(watts: f64) -> Light {
         let source = Source::Point { position: glam::DVec3::ZERO, intensity: Rgb::splat(watts) };
-        Light { source, falloff: None, shadow: true, samples: 1 }
+        Light::new(source, None, true, 1)
     }
 
     #[test]
@@ -141,7 +141,7 @@ mod tests {
     fn a_light_is_chosen_by_what_it_brings_to_the_point() {
         let at_height = |y: f64, watts| {
             let source = Source::Point { position: DVec3::Y * y, intensity: Rgb::splat(watts) };
-            Light { source, falloff: None, shadow: true, samples: 1 }
+            Light::new(source, None, true, 1)
         };
         // 1, 1/4, and from below 0.
         let lights = [at_height(1.0, 1.0), at_height(2.0, 1.0), at_height(-1.0, 9.0)];
@@ -158,13 +158,17 @@ mod tests {
             let often = (0..n).filter(|k| pick(*k).0 == i).count() as f64 / f64::from(n);
             assert!((often - share(i)).abs() < 2e-4, "{i}: {often}");
         }
-        let sky =
-            Light { source: Source::Sky { radiance: Rgb::ONE }, falloff: None, shadow: true, samples: 1 };
-        let outside = [sky, at_height(1.0, 1.0)];
-        let choice_outside = Choice::new(&outside, 1.0);
-        let shares = [0, 1].map(|i| choice_outside.share_at(&outside, i, DVec3::ZERO, DVec3::Y));
-        assert_eq!(shares, [0.0, 1.0], "paths find the sky by themselves");
-        assert_eq!(choice_outside.pick_at(&outside, DVec3::ZERO, DVec3::Y, 1.0 - 1e-12), Some((1, 1.0)));
+        let outside = |shadow| {
+            let sky = Light::new(Source::Sky { radiance: Rgb::ONE }, None, shadow, 1);
+            [sky, at_height(1.0, 1.0)]
+        };
+        let share_of_sky =
+            |lights: &[Light]| Choice::new(lights, 1.0).share_at(lights, 0, DVec3::ZERO, DVec3::Y);
+        let lit = outside(true);
+        assert_eq!(share_of_sky(&lit), 0.0, "paths find the sky by themselves");
+        let picked = Choice::new(&lit, 1.0).pick_at(&lit, DVec3::ZERO, DVec3::Y, 1.0 - 1e-12);
+        assert_eq!(picked, Some((1, 1.0)));
+        assert!(share_of_sky(&outside(false)) > 0.0, "but not one that nothing stops");
         let unlit = choice.share_at(&lights, 0, DVec3::Y * 50.0, DVec3::Y);
         assert_eq!(unlit, choice.share(0), "where no light reaches, by power");
     }

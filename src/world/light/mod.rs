@@ -48,6 +48,9 @@ pub struct Light {
     pub shadow: bool,
     /// How many samples whitted takes at the first hit: 1 for lights without extent.
     pub samples: u32,
+    /// Whether chance finds it as well, by rays that meet it with a density that [`Light::density`] knows: the two share what it sends.
+    /// Else all of that counts where it is asked.
+    is_met: bool,
 }
 
 /// The forms of a light, in world space.
@@ -111,7 +114,16 @@ impl Lights {
             })
         };
         let of_emitter = world.emitters.iter().map(add).collect();
+        if world.hides_from_light() {
+            lights.iter_mut().for_each(|light| light.is_met = false);
+        }
         Lights { lights, skies, of_emitter }
+    }
+
+    /// Whether rays that leave the lights and are stopped by whatever stands in their way bring all light there is.
+    pub fn are_all_sent(&self, world: &World) -> bool {
+        let shadows = self.lights.iter().all(|light| light.shadow);
+        shadows && !world.glows_unasked && !world.hides_from_light()
     }
 
     /// The light that a primitive is part of, by its index; none where it does not emit or is not asked.
@@ -166,19 +178,25 @@ impl Light {
             }
             LightSource::Area { .. } => return None,
         };
-        Some(Light { source, falloff: placed.light.falloff, shadow: placed.light.shadow, samples })
+        Some(Light::new(source, placed.light.falloff, placed.light.shadow, samples))
+    }
+
+    fn new(source: Source, falloff: Option<[f64; 3]>, shadow: bool, samples: u32) -> Light {
+        let has_density = match &source {
+            Source::Sky { .. } | Source::PictureSky(_) => true,
+            Source::Area(area) => area.knows_density(),
+            Source::Point { .. } | Source::Spot { .. } | Source::Sun { .. } => false,
+        };
+        Light { source, falloff, shadow, samples, is_met: shadow && has_density }
     }
 
     /// A surface that emits. None for one without area.
     pub fn emitter(emitter: &Emitter) -> Option<Light> {
         let area = AreaLight::new(emitter)?;
         let light = emitter.light.as_deref();
-        Some(Light {
-            source: Source::Area(Box::new(area)),
-            falloff: light.and_then(|l| l.falloff),
-            shadow: light.is_none_or(|l| l.shadow),
-            samples: light.map_or(DEFAULT_SAMPLES, |l| l.samples).max(1),
-        })
+        let samples = light.map_or(DEFAULT_SAMPLES, |l| l.samples).max(1);
+        let source = Source::Area(Box::new(area));
+        Some(Light::new(source, light.and_then(|l| l.falloff), light.is_none_or(|l| l.shadow), samples))
     }
 
     /// True for a light that no ray meets by chance: point, spot and sun.
@@ -215,19 +233,14 @@ impl Light {
     /// Whether a ray may meet what [`Light::sample`] chooses, with a density that [`Light::density`] knows.
     #[inline]
     pub fn is_met(&self) -> bool {
-        self.shadow
-            && match &self.source {
-                Source::Sky { .. } | Source::PictureSky(_) => true,
-                Source::Area(area) => area.knows_density(),
-                Source::Point { .. } | Source::Spot { .. } | Source::Sun { .. } => false,
-            }
+        self.is_met
     }
 
     /// Density per solid angle with which [`Light::sample`] chooses the direction `wi` from a point, given where a ray that way
     /// met the light (the sky: nothing). None where chance does not find what the light sends, so that only samples count.
     pub fn density(&self, at: DVec3, normal: DVec3, wi: DVec3, met: Option<&SurfacePoint>) -> Option<f64> {
         match (&self.source, met) {
-            _ if !self.shadow => None,
+            _ if !self.is_met => None,
             (Source::Sky { .. }, None) => Some(wi.dot(normal).max(0.0) / PI),
             (Source::PictureSky(sky), None) => Some(sky.density(wi)),
             (Source::Area(area), Some(met)) => area.density(at, normal, wi, met),

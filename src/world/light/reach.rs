@@ -56,7 +56,7 @@ impl Light {
 
     /// Whether a path finds it as well by itself: a sky that is the same everywhere.
     pub(super) fn is_found(&self) -> bool {
-        matches!(self.source, Source::Sky { .. })
+        self.is_met && matches!(self.source, Source::Sky { .. })
     }
 
     fn from_point(&self, at: DVec3, normal: DVec3, position: DVec3, share: impl Fn(DVec3) -> f64) -> f64 {

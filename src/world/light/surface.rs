@@ -1,7 +1,7 @@
 //! Surfaces that emit, as lights: a sphere by the solid angle it fills, everything else by area.
 //!
 //! A flat surface and a mesh emit from the side that their normal leaves. A closed solid emits from both, so that a point
-//! inside a glowing sphere is lit.
+//! inside a glowing sphere is lit. Of a surface that is there only in part, that part emits; a closed solid then shows its far side too.
 
 use super::emission::{Departure, sphere};
 use super::pieces::{Curved, Piece, PiecePoint, sphere_uv};
@@ -24,6 +24,7 @@ pub struct AreaLight {
     form: Form,
     extent: Extent,
     emission: Texture,
+    opacity: Texture,
     local_from_world: Affine,
 }
 
@@ -47,13 +48,18 @@ enum Solid {
 impl AreaLight {
     /// An emitter as a light. None where it has no area or emits nothing anywhere.
     pub fn new(emitter: &Emitter) -> Option<AreaLight> {
-        let emission = emitter.material.layers().emit.clone();
-        if emission.is(Rgb::ZERO) {
+        let layers = emitter.material.layers();
+        if layers.emit.is(Rgb::ZERO) || layers.opacity.is(Rgb::ZERO) {
             return None;
         }
         let form = form_of(emitter)?;
-        let extent = extent_of(&form);
-        Some(AreaLight { form, extent, emission, local_from_world: emitter.world_from_local.inverse() })
+        Some(AreaLight {
+            extent: extent_of(&form),
+            form,
+            emission: layers.emit.clone(),
+            opacity: layers.opacity.clone(),
+            local_from_world: emitter.world_from_local.inverse(),
+        })
     }
 
     /// Light toward a point from a point of the surface chosen by u. `normal` is the receiver's, on the side that is lit; `dimming` is
@@ -70,8 +76,12 @@ impl AreaLight {
             Form::Sphere { center, radius } => self.by_sphere(at, normal, (*center, *radius), u, dimming),
             Form::Pieces { pieces, sums, solid, .. } => {
                 let (piece, share, u) = choose(pieces, sums, u);
-                let inside = solid.as_ref().is_some_and(|s| s.contains(self.local_from_world.point(at)));
-                self.by_piece(at, piece.point(u), share, inside, dimming)
+                let shown = match solid {
+                    Some(_) if !self.opacity.is(Rgb::ONE) => Shown::Both,
+                    Some(solid) if solid.contains(self.local_from_world.point(at)) => Shown::Inner,
+                    _ => Shown::Outer,
+                };
+                self.by_piece(at, piece.point(u), share, shown, dimming)
             }
         }
     }
@@ -132,12 +142,13 @@ impl AreaLight {
         &self.extent
     }
 
-    /// Its radiance; white for a pattern.
+    /// Its radiance, less what is not there of it; patterns count as 1.
     pub(super) fn typical(&self) -> Rgb {
-        match &self.emission {
-            Texture::Constant(radiance) => *radiance,
+        let of = |texture: &Texture| match texture {
+            Texture::Constant(value) => *value,
             Texture::Pattern(_) => Rgb::ONE,
-        }
+        };
+        of(&self.emission) * of(&self.opacity)
     }
 
     #[inline]
@@ -146,7 +157,7 @@ impl AreaLight {
         at: DVec3,
         chosen: PiecePoint,
         share: f64,
-        inside: bool,
+        shown: Shown,
         dimming: impl Fn(f64) -> f64,
     ) -> Option<LightSample> {
         let to = chosen.at.point - at;
@@ -154,7 +165,11 @@ impl AreaLight {
         let distance = squared.sqrt();
         let wi = to / distance;
         let facing = chosen.at.normal.dot(wi);
-        let cosine = if inside { facing } else { -facing };
+        let cosine = match shown {
+            Shown::Outer => -facing,
+            Shown::Inner => facing,
+            Shown::Both => facing.abs(),
+        };
         if !(cosine > 0.0 && wi.is_finite()) {
             return None;
         }
@@ -205,18 +220,28 @@ impl AreaLight {
         weight.is_finite().then_some(LightSample { wi, weight, pdf: Some(pdf), end })
     }
 
+    /// Its radiance at a point, less what is not there of it.
     #[inline]
     pub(super) fn emitted(&self, at: &SurfacePoint, uv: Uv, distance: f64) -> Rgb {
-        match &self.emission {
-            Texture::Constant(radiance) => *radiance,
-            Texture::Pattern(_) => {
+        match (&self.emission, &self.opacity) {
+            (Texture::Constant(radiance), Texture::Constant(opacity)) => *radiance * *opacity,
+            _ => {
                 let local_point = self.local_from_world.point(at.point);
                 let (point, normal, t) = (at.point, at.normal, distance);
                 let point = TexturePoint { local_point, uv, point, normal, t, worn: None };
-                texture::colour(&self.emission, &point).unwrap_or(Rgb::ZERO)
+                let radiance = texture::colour(&self.emission, &point).unwrap_or(Rgb::ZERO);
+                radiance * texture::opacity(&self.opacity, &point).unwrap_or(0.0)
             }
         }
     }
+}
+
+/// The sides of a surface that shine on a point.
+#[derive(Clone, Copy)]
+enum Shown {
+    Outer,
+    Inner,
+    Both,
 }
 
 /// Where a point lies that a sphere shines on.
@@ -288,12 +313,14 @@ fn extent_of(form: &Form) -> Extent {
 
 fn form_of(emitter: &Emitter) -> Option<Form> {
     let place = &emitter.world_from_local;
+    // A solid angle holds the near side alone.
+    let is_opaque = emitter.material.layers().opacity.is(Rgb::ONE);
     let pieces = match &emitter.shape {
         EmitterShape::Sphere { center, radius } => match similarity(&place.linear) {
-            Some(scale) => {
+            Some(scale) if is_opaque => {
                 return Some(Form::Sphere { center: place.point(*center), radius: radius * scale });
             }
-            None => vec![curved(Curved::Sphere { center: *center, radius: *radius }, place)],
+            _ => vec![curved(Curved::Sphere { center: *center, radius: *radius }, place)],
         },
         EmitterShape::Disc(d) => vec![ellipse(d.center, d.normal, d.radius, place)],
         EmitterShape::Rect(r) => vec![parallelogram(r.center, r.a, r.b, place)],

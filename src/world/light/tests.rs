@@ -163,8 +163,7 @@ fn an_ellipsoid_is_no_sphere() {
 
 #[test]
 fn a_uniform_sky_gives_pi_times_its_radiance() {
-    let light =
-        Light { source: Source::Sky { radiance: Rgb::ONE }, falloff: None, shadow: true, samples: 16 };
+    let light = Light::new(Source::Sky { radiance: Rgb::ONE }, None, true, 16);
     for normal in [DVec3::Z, -DVec3::Z, DVec3::new(0.3, -0.8, -0.2).normalize()] {
         assert_near(irradiance(&light, DVec3::ZERO, normal, 4), 1.0, 1e-14, "sky");
     }
@@ -187,11 +186,9 @@ fn spots_are_full_inside_and_dark_outside_their_cones() {
 #[test]
 fn point_lights_fall_off_by_the_square_unless_told_otherwise() {
     let position = DVec3::new(0.0, 0.0, 4.0);
-    let light = |falloff| Light {
-        source: Source::Point { position, intensity: Rgb::splat(32.0) },
-        falloff,
-        shadow: true,
-        samples: 1,
+    let light = |falloff| {
+        let source = Source::Point { position, intensity: Rgb::splat(32.0) };
+        Light::new(source, falloff, true, 1)
     };
     let at_origin = |falloff| light(falloff).sample(DVec3::ZERO, DVec3::Z, DVec2::splat(0.5)).unwrap();
     assert_eq!(at_origin(None).weight, Rgb::splat(2.0));
@@ -207,5 +204,19 @@ fn frames_are_orthonormal_and_right_handed() {
     {
         let (s, t) = frame(n);
         assert!((s.cross(t) - n).length() < 1e-15 && s.dot(t).abs() < 1e-15 && s.is_normalized());
+    }
+}
+
+#[test]
+fn squares_that_face_or_meet_exchange_their_form_factors() {
+    let rect = |center, a, b| EmitterShape::Rect(Rect { center, a: a * 0.5, b: b * 0.5 });
+    let (x, y, z) = (DVec3::X, DVec3::Y, DVec3::Z);
+    let opposite = emitter(rect(z, y, x), Affine::IDENTITY, 1.0);
+    let beside = emitter(rect((x + z) / 2.0, y, -z), Affine::IDENTITY, 1.0);
+    for (light, exact) in [(opposite, 0.199825), (beside, 0.200044)] {
+        let n = 24;
+        let at = |u: DVec2| DVec3::new(u.x - 0.5, u.y - 0.5, 0.0);
+        let mean = grid(n).map(|u| irradiance(&light, at(u), z, 128)).sum::<f64>() / f64::from(n * n);
+        assert_near(mean, exact, 2e-3 * exact, "from square to square");
     }
 }

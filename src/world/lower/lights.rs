@@ -14,20 +14,26 @@ const MAX_LIGHTS: usize = 1 << 20;
 /// Placements of what gives light that are looked into at most: what glows without being sampled is never counted as a light.
 const MAX_VISITS: usize = 1 << 24;
 
-/// All lights in the order of the scene, and all emitters in the order of their ids.
-pub(super) fn gather(
-    aggregates: &[Aggregate],
-    materials: &[Arc<Material>],
-    sink: &mut Sink,
-) -> (Vec<PlacedLight>, Vec<Emitter>) {
+/// What gives light.
+#[derive(Default)]
+pub(super) struct Found {
+    /// All lights in the order of the scene.
+    pub lights: Vec<PlacedLight>,
+    /// All emitters in the order of their ids.
+    pub emitters: Vec<Emitter>,
+    /// True where something glows that is neither.
+    pub glows_unasked: bool,
+}
+
+/// Everything that gives light.
+pub(super) fn gather(aggregates: &[Aggregate], materials: &[Arc<Material>], sink: &mut Sink) -> Found {
     let emissive: Vec<bool> = materials.iter().map(|m| is_emissive(m)).collect();
     let mut gathering = Gathering {
         aggregates,
         materials,
         luminous: luminous(aggregates, &emissive),
         emissive,
-        lights: vec![],
-        emitters: vec![],
+        found: Found::default(),
         visits: 0,
     };
     let place =
@@ -39,9 +45,9 @@ pub(super) fn gather(
         let message = format!("the scene has more than {MAX_LIGHTS} lights; the rest gives none");
         sink.push(Diagnostic::new(Code::MemoryLimit, None, message));
     }
-    let Gathering { lights, mut emitters, .. } = gathering;
-    emitters.sort_by_key(|e| e.primitive);
-    (lights, emitters)
+    let mut found = gathering.found;
+    found.emitters.sort_by_key(|e| e.primitive);
+    found
 }
 
 fn is_emissive(material: &Material) -> bool {
@@ -74,8 +80,7 @@ struct Gathering<'a> {
     materials: &'a [Arc<Material>],
     emissive: Vec<bool>,
     luminous: Vec<bool>,
-    lights: Vec<PlacedLight>,
-    emitters: Vec<Emitter>,
+    found: Found,
     visits: usize,
 }
 
@@ -90,13 +95,13 @@ struct Place<'a> {
 
 impl Gathering<'_> {
     fn is_full(&self) -> bool {
-        self.lights.len() + self.emitters.len() >= MAX_LIGHTS || self.visits >= MAX_VISITS
+        self.found.lights.len() + self.found.emitters.len() >= MAX_LIGHTS || self.visits >= MAX_VISITS
     }
 
     fn group(&mut self, group: &Group, place: &Place<'_>) {
         for (light, transform) in &group.lights {
             let world_from_local = transform.then(&place.transform);
-            self.lights.push(PlacedLight { light: Arc::clone(light), world_from_local });
+            self.found.lights.push(PlacedLight { light: Arc::clone(light), world_from_local });
         }
         for (item, &own) in group.material.iter().enumerate() {
             if self.is_full() {
@@ -159,13 +164,17 @@ impl Gathering<'_> {
         primitive: PrimitiveId,
         place: &Place<'_>,
     ) {
-        self.emitters.extend(shape.map(|shape| Emitter {
+        let Some(shape) = shape else {
+            self.found.glows_unasked = true;
+            return;
+        };
+        self.found.emitters.push(Emitter {
             shape,
             world_from_local: place.transform,
             primitive,
             material: Arc::clone(&self.materials[material as usize]),
             light: place.light.cloned(),
-        }));
+        });
     }
 }
 
