@@ -52,6 +52,8 @@ pub struct Query {
     pub point: DVec3,
     /// Unit geometric normal there.
     pub normal: DVec3,
+    /// Whether photons that came from behind count too.
+    pub both_sides: bool,
     /// Photons beyond this distance do not count.
     pub radius: f64,
     /// Photons taken at most, the one that only measures counted.
@@ -84,8 +86,9 @@ impl Map {
     }
 
     /// The middle one of the distances within which a photon of the map has `most` others, by a few hundred of them. None where
-    /// there are too few.
+    /// there are too few to tell.
     pub fn spacing(&self, most: usize) -> Option<f64> {
+        let most = most.min(self.photons.len());
         let step = (self.photons.len() / PROBES).max(1);
         let mut distances: Vec<f64> =
             self.photons.iter().step_by(step).filter_map(|p| self.reach(p, most)).collect();
@@ -95,7 +98,8 @@ impl Map {
 
     fn reach(&self, photon: &Photon, most: usize) -> Option<f64> {
         let (point, normal) = (photon.position, photon.normal.as_dvec3());
-        let query = Query { point, normal, radius: f64::INFINITY, most, segments: u32::MAX };
+        let query =
+            Query { point, normal, both_sides: false, radius: f64::INFINITY, most, segments: u32::MAX };
         HEAP.with_borrow_mut(|heap| {
             self.nearest(&query, heap);
             (heap.len() == most).then(|| heap[0].0.sqrt())
@@ -199,9 +203,10 @@ impl Search<'_> {
 
     fn meet(&mut self, photon: &Photon, index: usize) {
         let squared = photon.position.distance_squared(self.query.point);
+        let facing = photon.normal.dot(self.query.normal.as_vec3());
         let counts = squared <= self.most
             && photon.segment <= self.query.segments
-            && photon.normal.dot(self.query.normal.as_vec3()) > ALIKE;
+            && (facing > ALIKE || self.query.both_sides && facing < -ALIKE);
         if !counts {
             return;
         }
@@ -271,7 +276,7 @@ mod tests {
     }
 
     fn query(point: DVec3, most: usize) -> Query {
-        Query { point, normal: DVec3::Z, radius: 1.0, most, segments: u32::MAX }
+        Query { point, normal: DVec3::Z, both_sides: false, radius: 1.0, most, segments: u32::MAX }
     }
 
     #[test]

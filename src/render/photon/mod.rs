@@ -7,6 +7,9 @@
 //! | from a lamp by mirrors and glass alone | the map of caustics, there |
 //! | from other matt surfaces | one segment on, the map of all photons at the matt surface met |
 //!
+//! Light that is not stopped by what photons meet, since its lamp casts no shadow or something is hidden from shadows, and light of what glows
+//! but is no lamp, is in no map of all photons: then there is none, and paths find what is not a caustic.
+//!
 //! Where photons are sparse, or the surface met is too close for a disc of them, the path goes on as any other: the
 //! estimate is blurred by no more than a few times the distance of photons where there is light.
 //! More samples shoot more photons, and the discs shrink. Those of caustics are sent only to what may be the first mirror or glass on
@@ -73,7 +76,10 @@ impl Maps {
             let photons = || shooting.photons(paths, room as usize);
             on_threads(settings.threads, || Map::new(photons()?, watch))
         };
-        let global = map(0, choice, &Aim::Anything(ball))?;
+        let global = match lights.are_all_sent(world) {
+            true => map(0, choice, &Aim::Anything(ball))?,
+            false => Map::default(),
+        };
         let caustics = match world.balls_of(RayKind::Indirect, bends) {
             Some(balls) if balls.is_empty() => Map::default(),
             Some(balls) => {
@@ -109,7 +115,14 @@ impl Maps {
 
     fn query(&self, i: usize, hit: &Hit<'_>, bsdf: &Bsdf, segment: u32) -> Query {
         let segments = self.depth.saturating_sub(segment);
-        Query { point: hit.point, normal: bsdf.geometric, radius: self.radii[i], most: MOST[i], segments }
+        Query {
+            point: hit.point,
+            normal: bsdf.geometric,
+            both_sides: bsdf.is_frosted(),
+            radius: self.radii[i],
+            most: MOST[i],
+            segments,
+        }
     }
 }
 
@@ -126,8 +139,8 @@ fn bends(material: &Material) -> bool {
 /// What becomes of a photon's power: sent on to where the surface is seen from, per area and solid angle.
 fn sent_on(bsdf: &Bsdf, photon: &Photon) -> Rgb {
     let from = photon.from.as_dvec3();
-    let cosine = from.dot(bsdf.normal);
-    if cosine <= 0.0 {
+    let cosine = from.dot(bsdf.normal).abs();
+    if cosine == 0.0 {
         return Rgb::ZERO;
     }
     bsdf.sent(from) / cosine * photon.power.as_dvec3()

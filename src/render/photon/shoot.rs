@@ -7,10 +7,10 @@ use crate::render::path::survival;
 use crate::render::sampler::{Sampler, rows};
 use crate::render::tiles::Watch;
 use crate::scene::Rgb;
-use crate::world::bsdf::Bsdf;
+use crate::world::bsdf::{Bounce, Bsdf};
 use crate::world::light::{Aim, Choice, Light, Lights};
 use crate::world::texture::Sampled;
-use crate::world::{Ray, RayKind, World};
+use crate::world::{Hit, Ray, RayKind, World};
 use rayon::prelude::*;
 
 /// What is shot, into what.
@@ -41,7 +41,25 @@ struct Flight {
     inside: Inside,
     /// Segments from the lamp, this one counted.
     segment: u32,
+    /// Of this segment so far, past what let it slip by.
+    length: f64,
     sampler: Sampler,
+}
+
+impl Flight {
+    /// Leaves a surface along a bounce. False where `chance` in (0, 1) ends it.
+    fn leave(&mut self, hit: &Hit<'_>, bsdf: &Bsdf, bounce: &Bounce, chance: f64) -> bool {
+        if bounce.through {
+            self.inside = self.inside.across(bsdf);
+        }
+        self.ray = hit.spawn(bounce.direction, RayKind::Indirect);
+        self.length = 0.0;
+        self.segment += 1;
+        let weight = bsdf.forwarded(bounce);
+        let goes_on = survival(weight.max_element(), self.segment);
+        self.power *= weight / goes_on;
+        chance < goes_on && self.power.is_finite() && self.power != Rgb::ZERO
+    }
 }
 
 /// Paths followed before it is asked whether there are enough photons.
@@ -105,7 +123,8 @@ impl Shooting<'_> {
         let light = &self.lights.lights[i];
         let Some(emitted) = light.emit(place, way, which.y, self.aim) else { return Ok(()) };
         let power = emitted.power / often;
-        let mut flight = Flight { ray: emitted.ray, power, inside: Inside::NOTHING, segment: 1, sampler };
+        let (inside, length) = (Inside::NOTHING, 0.0);
+        let mut flight = Flight { ray: emitted.ray, power, inside, segment: 1, length, sampler };
         while self.follow(light, &mut flight, photons)? {}
         Ok(())
     }
@@ -115,12 +134,13 @@ impl Shooting<'_> {
         let Some(hit) = self.world.closest(&flight.ray) else { return Ok(false) };
         let bsdf = Bsdf::at(self.world, &hit, &flight.ray)?;
         flight.power *= flight.inside.left(&bsdf, hit.t);
+        flight.length += hit.t;
         if bsdf.opacity < 1.0 && flight.sampler.next_1d() >= bsdf.opacity {
             flight.ray = hit.spawn(flight.ray.direction, flight.ray.kind);
             return Ok(true);
         }
         if flight.segment == 1 {
-            flight.power *= light.dimming(hit.t);
+            flight.power *= light.dimming(flight.length);
         }
         if bsdf.has_base() && (flight.segment > 1 || !self.caustics) {
             let from = -flight.ray.direction;
@@ -132,19 +152,9 @@ impl Shooting<'_> {
         }
         let (which, u) = (flight.sampler.next_2d(), flight.sampler.next_2d());
         let Some(bounce) = bsdf.bounce(bsdf.odds(), which.x, u) else { return Ok(false) };
-        let spread = bounce.density.filter(|_| bsdf.has_base());
-        let weight = match spread {
-            Some(_) if self.caustics => return Ok(false),
-            Some(density) => bsdf.forwarded(bounce.direction) / density,
-            None => bounce.weight,
-        };
-        if bounce.through {
-            flight.inside = flight.inside.across(&bsdf);
+        if self.caustics && bsdf.has_base() && bounce.density.is_some() {
+            return Ok(false);
         }
-        flight.ray = hit.spawn(bounce.direction, RayKind::Indirect);
-        flight.segment += 1;
-        let goes_on = survival(weight.max_element(), flight.segment);
-        flight.power *= weight / goes_on;
-        Ok(which.y < goes_on && flight.power.is_finite())
+        Ok(flight.leave(&hit, &bsdf, &bounce, which.y))
     }
 }

@@ -48,5 +48,5 @@ fn is_same_everywhere(material: &Material) -> bool {
 fn constant(material: &Material) -> Option<Bsdf> {
     let mut bsdf = Bsdf::BARE;
     bsdf.add(material, &TexturePoint::default()).ok()?;
-    Some(bsdf)
+    Some(bsdf.with_losses())
 }

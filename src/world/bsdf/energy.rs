@@ -6,9 +6,11 @@
 //! share F̄ on average take their part at every further bounce, by F̄²Ē / (1 − F̄(1 − Ē)).
 
 mod glass;
+mod losses;
 
 use crate::scene::Rgb;
 pub use glass::Glass;
+pub use losses::Losses;
 use std::f64::consts::{LN_2, PI};
 
 /// Columns of the table: μ = tα / (1 + α − t), t = (i/23)². What is lost is largest about μ = α and looks alike there for all small α.

@@ -17,7 +17,7 @@ use super::texture::{self, Sampled, TexturePoint};
 use super::{Ray, World};
 use crate::scene::{Fresnel, Lobe, Material, Rgb};
 pub use coat::Coat;
-use energy::{Glass, Lost};
+use energy::{Glass, Losses, Lost};
 use fresnel::{reflect, refract};
 use glam::{DVec2, DVec3};
 use lobes::Ggx;
@@ -52,6 +52,8 @@ pub struct Bsdf {
     transmit: Rgb,
     roughness: f64,
     mirror: Mirror,
+    /// Of rough glass that is the same everywhere.
+    losses: Option<&'static Losses>,
 }
 
 /// How the mirror share goes with the angle.
@@ -68,6 +70,9 @@ enum Mirror {
     /// The boundary of what lets light through: silvered by a share, the rest by the law for its index.
     Boundary(Rgb, Fresnel),
 }
+
+/// Facets that differ by less than this from one another differ by less than a unit vector's roundings, squared: a smooth mirror.
+const SMOOTH: f64 = 1.0 / (1u64 << 26) as f64;
 
 /// A direction in which light goes on, and the share of it that does.
 #[derive(Clone, Copy, Debug)]
@@ -132,6 +137,7 @@ impl Bsdf {
         transmit: Rgb::ZERO,
         roughness: 0.0,
         mirror: Mirror::None,
+        losses: None,
     };
 
     /// What a material is made of, beside its normal.
@@ -156,6 +162,9 @@ impl Bsdf {
         self.mirror = mirror(colour(&layers.metal)?, self.transmit, colour(&layers.reflect)?, layers.fresnel);
         if !matches!(self.mirror, Mirror::None) {
             self.roughness = number(&layers.roughness)?.max(0.0);
+            if self.roughness < SMOOTH {
+                self.roughness = 0.0;
+            }
         }
         Ok(())
     }
@@ -250,10 +259,21 @@ impl Bsdf {
     fn rough_glass(&self) -> Option<Glass> {
         match self.mirror {
             Mirror::Boundary(silver, Fresnel::Exact | Fresnel::Schlick) if self.is_frosted() => {
-                Some(Glass::new(self.roughness, self.eta(), silver))
+                Some(Glass::new(self.roughness, self.eta(), silver, self.losses))
             }
             _ => None,
         }
+    }
+
+    /// With sums of its own of what rough glass loses, for a material that is the same everywhere.
+    fn with_losses(self) -> Bsdf {
+        let losses = match self.mirror {
+            Mirror::Boundary(_, law) if self.rough_glass().is_some() => {
+                Some(Losses::of(self.roughness, self.ior, law))
+            }
+            _ => None,
+        };
+        Bsdf { losses, ..self }
     }
 
     /// The share that facets of an opaque mirror reflect on average over all directions. None where light is let through.
@@ -307,7 +327,8 @@ impl Bsdf {
         if self.transmit == Rgb::ZERO {
             return None;
         }
-        let (facet, rough) = self.facet(u);
+        // One that does not bend light does not spread it.
+        let (facet, rough) = if self.is_frosted() { self.facet(u) } else { (self.normal, false) };
         let further =
             self.rough_glass().map_or(Rgb::ZERO, |glass| glass.let_through(self.wo.dot(self.normal)));
         let Some(bent) = refract(self.wo, facet, self.eta()) else {

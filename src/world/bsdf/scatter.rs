@@ -25,16 +25,15 @@ pub struct Bounce {
     pub through: bool,
 }
 
-/// A rough boundary mirrors and lets through at least so often each, whatever its share seen as a whole: facets differ.
-const LEAST_ODDS: f64 = 0.125;
-
 /// How often each way of going on is chosen. They sum to 1, or all are 0.
 #[derive(Clone, Copy, Debug)]
 pub struct Odds {
     /// Of a direction by its cosine.
     diffuse: f64,
     specular: f64,
+    /// Of the mirror; of a facet where light is let through a rough boundary, which then mirrors or bends.
     mirror: f64,
+    /// Through what is smooth.
     through: f64,
     /// Of a direction beyond the surface, by its cosine.
     beyond: f64,
@@ -75,27 +74,24 @@ impl Bsdf {
     /// A way on: which lobe by these odds and `choice` in (0, 1), where in it by u in (0, 1)². None where nothing is sent on from there.
     pub fn bounce(&self, odds: Odds, choice: f64, u: DVec2) -> Option<Bounce> {
         let Odds { diffuse, specular, mirror, .. } = odds;
-        let direction = if choice < diffuse {
-            to_frame(self.normal, cosine_hemisphere(u))
+        let (direction, above) = if choice < diffuse {
+            (to_frame(self.normal, cosine_hemisphere(u)), true)
         } else if choice < diffuse + specular {
-            lobes::choose_specular(self.lobe, self.exponent, self.normal, self.wo, u)
+            (lobes::choose_specular(self.lobe, self.exponent, self.normal, self.wo, u), true)
         } else if choice < diffuse + specular + mirror {
             match self.is_glossy() {
-                true => reflect(self.wo, self.ggx().visible_normal(self.wo, u)),
+                true => self.by_facet((choice - diffuse - specular) / mirror, u)?,
                 false => return self.smooth(self.mirrored(u)?, odds.mirror, false),
             }
         } else if choice < diffuse + specular + mirror + odds.beyond {
-            to_frame(-self.normal, cosine_hemisphere(u))
+            (to_frame(-self.normal, cosine_hemisphere(u)), false)
         } else if odds.through > 0.0 {
-            match self.is_frosted() {
-                true => refract(self.wo, self.ggx().visible_normal(self.wo, u), self.eta())?,
-                false => return self.smooth(self.transmitted(u)?, odds.through, true),
-            }
+            return self.smooth(self.transmitted(u)?, odds.through, true);
         } else {
             return None;
         };
         // A lobe has no density on the other side, though it may point there; the lobe of that side is not this one.
-        if (direction.dot(self.normal) > 0.0) != (choice < diffuse + specular + mirror) {
+        if (direction.dot(self.normal) > 0.0) != above {
             return None;
         }
         let density = self.density(odds, direction);
@@ -109,12 +105,39 @@ impl Bsdf {
         useful.then_some(Bounce { direction, weight, density: Some(density), through })
     }
 
-    /// What is sent on along `to` of light that arrives along `wo`, per steradian: light followed the other way. The base is shaded by
-    /// the mirror's share toward who sees it, so the two ways differ.
-    pub fn forwarded(&self, to: DVec3) -> Rgb {
-        let from = self.wo;
-        let seen = Bsdf { wo: to, ..self.clone() };
-        seen.sent(from) * (to.dot(self.normal).max(0.0) / from.dot(self.normal))
+    /// The way that a facet chosen by u sends `wo`, and whether it mirrors it; by `choice` where it may let it through.
+    fn by_facet(&self, choice: f64, u: DVec2) -> Option<(DVec3, bool)> {
+        let facet = self.ggx().visible_normal(self.wo, u);
+        if choice < self.mirrors(facet) {
+            return Some((reflect(self.wo, facet), true));
+        }
+        Some((refract(self.wo, facet, self.eta())?, false))
+    }
+
+    /// How often a facet that was chosen mirrors: by its own share, since that of the whole surface is another beyond the critical angle.
+    fn mirrors(&self, facet: DVec3) -> f64 {
+        if !self.is_frosted() {
+            return 1.0;
+        }
+        let share = self.mirror_share(self.wo.dot(facet).clamp(0.0, 1.0));
+        let (mirrored, through) = (mean(share), mean((Rgb::ONE - share) * self.transmit));
+        if mirrored > 0.0 { mirrored / (mirrored + through) } else { 0.0 }
+    }
+
+    /// What is sent on along a bounce of light that arrives along `wo`: light followed the other way, as power. The base is shaded by
+    /// the mirror's share toward who sees it, so the two ways differ; and since radiance is not scaled by the squared index, power
+    /// is where it goes through: by the near index over the far one, squared.
+    pub fn forwarded(&self, bounce: &Bounce) -> Rgb {
+        let Some(density) = bounce.density else {
+            let eta = if bounce.through { self.eta() } else { 1.0 };
+            return bounce.weight / (eta * eta);
+        };
+        let (from, to) = (self.wo, bounce.direction);
+        let side = if bounce.through { -1.0 } else { 1.0 };
+        let (normal, geometric) = (self.normal * side, self.geometric * side);
+        let seen =
+            Bsdf { wo: to, normal, geometric, outside: self.outside != bounce.through, ..self.clone() };
+        seen.sent(from) * (to.dot(normal).max(0.0) / from.dot(self.normal) / density)
     }
 
     fn smooth(&self, way: super::Scattered, odds: f64, through: bool) -> Option<Bounce> {
@@ -139,11 +162,6 @@ impl Bsdf {
             Mirror::None => Rgb::ZERO,
             _ => self.mirror_share(self.wo.dot(self.normal)),
         };
-        // Beyond the critical angle of the whole surface some of its facets still let light through.
-        let share = match self.is_frosted() {
-            true => share.clamp(Rgb::splat(LEAST_ODDS), Rgb::splat(1.0 - LEAST_ODDS)),
-            false => share,
-        };
         let rest = Rgb::ONE - share;
         let [d, s, m, t] =
             [mean(rest * self.diffuse), mean(rest * self.specular), mean(share), mean(rest * self.transmit)];
@@ -154,6 +172,7 @@ impl Bsdf {
             .map_or(0.0, |glass| mean(self.transmit * glass.let_through(self.wo.dot(self.normal))));
         let sum = d + s + m + t + further + beyond;
         let of = |part: f64| if sum > 0.0 { part / sum } else { 0.0 };
+        let (m, t) = if self.is_frosted() { (m + t, 0.0) } else { (m, t) };
         Odds { diffuse: of(d + further), specular: of(s), mirror: of(m), through: of(t), beyond: of(beyond) }
     }
 
@@ -161,8 +180,12 @@ impl Bsdf {
     pub fn density(&self, odds: Odds, wi: DVec3) -> f64 {
         let cosine = wi.dot(self.normal);
         if cosine <= 0.0 {
-            let bent = if odds.through > 0.0 { odds.through * self.frosted_density(wi) } else { 0.0 };
-            return bent + odds.beyond * -cosine * FRAC_1_PI;
+            let bent = self.frosted_density(wi);
+            let bent = match bent > 0.0 {
+                true => bent * (1.0 - self.mirrors(self.ggx().bending(self.wo, wi, self.eta()))),
+                false => 0.0,
+            };
+            return odds.mirror * bent + odds.beyond * -cosine * FRAC_1_PI;
         }
         let mut density = odds.diffuse * cosine * FRAC_1_PI;
         if odds.specular > 0.0 {
@@ -170,13 +193,14 @@ impl Bsdf {
                 odds.specular * lobes::specular_density(self.lobe, self.exponent, self.normal, self.wo, wi);
         }
         if odds.mirror > 0.0 && self.is_glossy() {
-            density += odds.mirror * self.ggx().mirrored_density(self.wo, wi);
+            let mirrored = self.ggx().mirrored_density(self.wo, wi);
+            density += odds.mirror * mirrored * self.mirrors((self.wo + wi).normalize_or(self.normal));
         }
         density
     }
 
     /// True where light goes through a rough boundary, which spreads it. One that does not bend does not spread either.
-    pub(super) fn is_frosted(&self) -> bool {
+    pub fn is_frosted(&self) -> bool {
         self.is_transmissive() && self.roughness > 0.0 && self.ior != 1.0
     }
 
@@ -290,6 +314,46 @@ mod tests {
             let (a, b) = (cosine_hemisphere(u), cosine_hemisphere(DVec2::new(u.y, 1.0 - u.x)));
             let (there, back) = (metal(a).gloss(b) / b.z, metal(b).gloss(a) / a.z);
             assert!((there - back).abs().max_element() <= 1e-13 * there.max_element(), "{there} and {back}");
+        }
+    }
+
+    #[test]
+    fn lobes_send_the_same_both_ways_and_glass_but_for_the_squared_index() {
+        // All but those whose base is shaded by the mirror's share toward who sees it.
+        for (name, bsdf) in
+            materials(0.6).into_iter().filter(|(name, _)| !["rough share", "coated"].contains(name))
+        {
+            let above = |u| cosine_hemisphere(u);
+            let both = |u| [above(u), above(u) * DVec3::new(1.0, 1.0, -1.0)];
+            for wi in grid(9).flat_map(both) {
+                let through = wi.z < 0.0;
+                let side = if through { -1.0 } else { 1.0 };
+                let (normal, geometric) = (bsdf.normal * side, bsdf.geometric * side);
+                let back =
+                    Bsdf { wo: wi, normal, geometric, outside: bsdf.outside != through, ..bsdf.clone() };
+                let (there, back) = (bsdf.sent(wi) / wi.z.abs(), back.sent(bsdf.wo) / bsdf.wo.z);
+                let eta = if through { bsdf.eta() } else { 1.0 };
+                let off = (there - back * (eta * eta)).abs().max_element();
+                assert!(off <= 1e-9 * there.max_element(), "{name}, {wi}: {there} and {back}, η {eta}");
+            }
+        }
+    }
+
+    #[test]
+    fn light_followed_forward_carries_what_it_carries_back() {
+        let matt_glass = Bsdf { diffuse: Rgb::splat(0.3), ..materials(0.7).remove(7).1 };
+        for bsdf in materials(0.7).into_iter().map(|(_, bsdf)| bsdf).chain([matt_glass]) {
+            // Power that arrives along `wo`, and is sent on: by the lobes as they are seen from where it goes.
+            let forwarded = over_all_choices(&bsdf, |bounce| bsdf.forwarded(bounce).x);
+            let seen = over_all_directions(1000, |to| {
+                let through = to.z < 0.0;
+                let side = if through { -1.0 } else { 1.0 };
+                let (normal, geometric) = (bsdf.normal * side, bsdf.geometric * side);
+                let outside = bsdf.outside != through;
+                let from = Bsdf { wo: to, normal, geometric, outside, ..bsdf.clone() };
+                from.sent(bsdf.wo).x * to.z.abs() / bsdf.wo.z
+            });
+            assert!((forwarded - seen).abs() < 5e-3, "{bsdf:?}: {forwarded} and {seen}");
         }
     }
 

@@ -6,7 +6,7 @@
 //! Both ways through are the same but for the squared index where (1 − c)(1 − Ē) = η² (1 − c′)(1 − Ē′), η seen from the rarer
 //! side. There c is taken to be the mean share that a facet reflects; so nearly all that the denser side loses is sent back.
 
-use super::{Lost, split};
+use super::{Losses, Lost, split};
 use crate::scene::Rgb;
 use crate::world::bsdf::fresnel;
 use std::f64::consts::PI;
@@ -19,13 +19,19 @@ const LAYERS: usize = 9;
 /// Further bounces at a boundary, seen from one side.
 #[derive(Clone, Copy, Debug)]
 pub struct Glass {
-    cell: Cell,
+    known: Known,
     /// Of the side it is seen from: 0 the rarer, 1 the denser.
     side: usize,
     silver: Rgb,
-    silvered: Lost,
     /// 1 − c.
     through: Rgb,
+}
+
+/// What is lost, by its own sums or by the table.
+#[derive(Clone, Copy, Debug)]
+enum Known {
+    Own { losses: &'static Losses, alpha: f64 },
+    Table { cell: Cell, silvered: Lost },
 }
 
 /// A roughness and an index, between rows and layers of the table.
@@ -36,15 +42,16 @@ struct Cell {
 }
 
 impl Glass {
-    /// Of this α, for an index beyond the boundary over that on the side it is seen from; `silver` is reflected before all else.
-    pub fn new(alpha: f64, eta: f64, silver: Rgb) -> Glass {
+    /// Of this α, for an index beyond the boundary over that on the side it is seen from; `silver` is reflected before all else. Where nothing
+    /// else is known, a table tells what is lost, for indices up to 3.
+    pub fn new(alpha: f64, eta: f64, silver: Rgb, own: Option<&'static Losses>) -> Glass {
         let (side, denser) = if eta < 1.0 { (1, 1.0 / eta) } else { (0, eta) };
-        let s = ((denser - 1.0) / (denser + 1.0)).min((LAYERS - 1) as f64 / 16.0);
-        let row = split(alpha.clamp(0.0, 1.0).sqrt(), ROWS);
-        let layer = split(s * 16.0 / (LAYERS - 1) as f64, LAYERS);
+        let known = match own {
+            Some(losses) => Known::Own { losses, alpha },
+            None => Known::Table { cell: Cell::of(alpha, denser), silvered: Lost::by(alpha) },
+        };
         let silver = silver.clamp(Rgb::ZERO, Rgb::ONE);
-        let silvered = Lost::by(alpha);
-        let mut glass = Glass { cell: Cell { row, layer }, side, silver, silvered, through: Rgb::ZERO };
+        let mut glass = Glass { known, side, silver, through: Rgb::ZERO };
         let mean = silver + (Rgb::ONE - silver) * fresnel::mean_of_dielectric(denser);
         let [rarer, dense] = [0, 1].map(|side| glass.on_average(side));
         let part = if side == 0 { Rgb::ONE } else { rarer / (dense * (denser * denser)) };
@@ -79,22 +86,42 @@ impl Glass {
     }
 
     fn lost(&self, side: usize, cosine: f64) -> Rgb {
-        let (i, part) = split(cosine.clamp(0.0, 1.0).sqrt(), COLUMNS);
-        let along = |row: &[f32; COLUMNS]| f64::from(row[i]) + part * f64::from(row[i + 1] - row[i]);
-        self.mixed(self.cell.between(|layer, row| along(&LOST[side][layer][row])), self.silvered.at(cosine))
+        let cosine = cosine.clamp(0.0, 1.0);
+        self.mixed(match &self.known {
+            Known::Own { losses, alpha } => losses.at(side, *alpha, cosine),
+            Known::Table { cell, silvered } => [cell.at(side, cosine), silvered.at(cosine)],
+        })
     }
 
     fn on_average(&self, side: usize) -> Rgb {
-        let bare = self.cell.between(|layer, row| f64::from(MEAN[side][layer][row]));
-        self.mixed(bare, self.silvered.on_average())
+        self.mixed(match &self.known {
+            Known::Own { losses, .. } => losses.on_average(side),
+            Known::Table { cell, silvered } => [cell.on_average(side), silvered.on_average()],
+        })
     }
 
-    fn mixed(&self, bare: f64, silvered: f64) -> Rgb {
+    fn mixed(&self, [bare, silvered]: [f64; 2]) -> Rgb {
         (Rgb::ONE - self.silver) * bare + self.silver * silvered
     }
 }
 
 impl Cell {
+    fn of(alpha: f64, denser: f64) -> Cell {
+        let s = ((denser - 1.0) / (denser + 1.0)).min((LAYERS - 1) as f64 / 16.0);
+        let layer = split(s * 16.0 / (LAYERS - 1) as f64, LAYERS);
+        Cell { row: split(alpha.clamp(0.0, 1.0).sqrt(), ROWS), layer }
+    }
+
+    fn at(&self, side: usize, cosine: f64) -> f64 {
+        let (i, part) = split(cosine.sqrt(), COLUMNS);
+        let along = |row: &[f32; COLUMNS]| f64::from(row[i]) + part * f64::from(row[i + 1] - row[i]);
+        self.between(|layer, row| along(&LOST[side][layer][row]))
+    }
+
+    fn on_average(&self, side: usize) -> f64 {
+        self.between(|layer, row| f64::from(MEAN[side][layer][row]))
+    }
+
     fn between(&self, at: impl Fn(usize, usize) -> f64) -> f64 {
         let mix = |a: f64, b: f64, part: f64| a + part * (b - a);
         let ((row, down), (layer, deep)) = (self.row, self.layer);
@@ -108,6 +135,7 @@ include!("table.rs");
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene::Fresnel;
     use crate::world::bsdf::fresnel::{dielectric, reflect, refract};
     use crate::world::bsdf::lobes::Ggx;
     use crate::world::even::grid;
@@ -115,7 +143,7 @@ mod tests {
 
     /// What one facet reflects and lets through, by facets chosen evenly.
     fn first(alpha: f64, eta: f64, cosine: f64) -> f64 {
-        let (ggx, n) = (Ggx { n: DVec3::Z, alpha }, 128);
+        let (ggx, n) = (Ggx { n: DVec3::Z, alpha }, 400);
         let wo = DVec3::new((1.0 - cosine * cosine).sqrt(), 0.0, cosine);
         let by = |h: DVec3| {
             let share = dielectric(wo.dot(h).clamp(0.0, 1.0), eta);
@@ -128,13 +156,16 @@ mod tests {
     #[test]
     fn nothing_is_lost_from_either_side() {
         for (alpha, ior) in [(0.1, 1.5), (0.2, 1.33), (0.4, 1.5), (0.6, 2.0), (0.85, 1.2), (1.0, 1.5)] {
+            let own = Losses::of(alpha, ior, Fresnel::Exact);
             for (eta, cosine) in
                 [ior, 1.0 / ior].into_iter().flat_map(|e| [1.0, 0.8, 0.5, 0.2].map(|c| (e, c)))
             {
-                let glass = Glass::new(alpha, eta, Rgb::ZERO);
-                let further = (glass.sent_back(cosine) + glass.let_through(cosine)).x;
-                let all = first(alpha, eta, cosine) + further;
-                assert!((all - 1.0).abs() < 0.012, "α {alpha}, η {eta}, cos {cosine}: {all}");
+                for (own, off) in [(None, 0.012), (Some(own), 4e-3)] {
+                    let glass = Glass::new(alpha, eta, Rgb::ZERO, own);
+                    let further = (glass.sent_back(cosine) + glass.let_through(cosine)).x;
+                    let all = first(alpha, eta, cosine) + further;
+                    assert!((all - 1.0).abs() < off, "α {alpha}, η {eta}, cos {cosine}: {all}");
+                }
             }
         }
     }
@@ -142,13 +173,20 @@ mod tests {
     #[test]
     fn lobes_carry_what_they_should_and_the_same_both_ways() {
         let (alpha, eta, silver) = (0.6, 1.5, Rgb::new(0.0, 0.2, 0.9));
-        let [outside, inside] = [eta, 1.0 / eta].map(|eta| Glass::new(alpha, eta, silver));
+        let own = Losses::of(alpha, eta, Fresnel::Exact);
+        for own in [None, Some(own)] {
+            let sides = [eta, 1.0 / eta].map(|eta| Glass::new(alpha, eta, silver, own));
+            lobes_carry_what_they_should(&sides, eta);
+        }
+    }
+
+    fn lobes_carry_what_they_should([outside, inside]: &[Glass; 2], eta: f64) {
         let n = 2000;
         let over = |lobe: &dyn Fn(f64) -> Rgb| -> Rgb {
             let mu = (0..n).map(|i| (f64::from(i) + 0.5) / f64::from(n));
             mu.map(|mu| lobe(mu) * (2.0 * PI * mu)).sum::<Rgb>() / f64::from(n)
         };
-        for glass in [&outside, &inside] {
+        for glass in [outside, inside] {
             let (back, through) = (over(&|mu| glass.back(0.4, mu)), over(&|mu| glass.through(0.4, mu)));
             assert!((back - glass.sent_back(0.4)).abs().max_element() < 0.01 * back.max_element());
             assert!((through - glass.let_through(0.4)).abs().max_element() < 0.01 * through.max_element());
