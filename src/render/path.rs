@@ -23,7 +23,7 @@ use super::photon::Maps;
 use super::sampler::Sampler;
 use super::settings::ResolvedSettings;
 use super::tiles::Watch;
-use crate::scene::Rgb;
+use crate::scene::{Material, Rgb};
 use crate::world::bsdf::{Bounce, Bsdf, Odds};
 use crate::world::light::{Ball, Choice, Lights};
 use crate::world::texture::Sampled;
@@ -46,8 +46,8 @@ pub struct Path {
     branches: u32,
     photons: Option<Maps>,
     records: Option<Records>,
-    /// True where a ray may meet what shines.
-    has_shine: bool,
+    /// True where a way on may find light of lamps: where it may meet what shines, or come to a rough mirror or glass that asks them.
+    finds_lamps: bool,
     /// Around what is so bright that its outline asks for rays of its own.
     lamps: Vec<Ball>,
     roulette: Roulette,
@@ -105,6 +105,15 @@ impl Stage {
     fn is_covered(self) -> bool {
         matches!(self, Stage::Covered | Stage::Gathered)
     }
+
+    /// Whether lamps are asked at a surface that spreads light, or, without a base, is a mirror or glass all the same.
+    fn asks(self, has_base: bool) -> bool {
+        match self {
+            Stage::Whole | Stage::Seen => true,
+            Stage::Gathers => has_base,
+            Stage::Covered | Stage::Gathered => false,
+        }
+    }
 }
 
 /// A path under way.
@@ -139,8 +148,10 @@ impl Path {
         let lights = Lights::new(world);
         let choice = Choice::new(&lights.lights, world.ball().reach);
         let has_holes = world.materials().any(|m| !m.layers().opacity.is(Rgb::ONE));
-        let emits = |m: &crate::scene::Material| !m.layers().emit.is(Rgb::ZERO);
-        let has_shine = lights.lights.iter().any(|light| !light.is_delta()) || world.materials().any(emits);
+        let shines_or_spreads =
+            |m: &Material| [&m.layers().emit, &m.layers().roughness].iter().any(|t| !t.is(Rgb::ZERO));
+        let finds_lamps =
+            lights.lights.iter().any(|light| !light.is_delta()) || world.materials().any(shines_or_spreads);
         let ResolvedSettings { depth, background, .. } = *settings;
         let (photons, records, roulette) = (None, None, Roulette::PLAIN);
         Path {
@@ -152,7 +163,7 @@ impl Path {
             branches: 1,
             photons,
             records,
-            has_shine,
+            finds_lamps,
             lamps: outline::lamps(world, settings),
             roulette,
         }
@@ -270,7 +281,7 @@ impl Path {
             return Ok(true);
         }
         let emitted = bsdf.emitted(world, hit);
-        if emitted != Rgb::ZERO && !walk.stage.is_covered() && !walk.tells_no_emission() {
+        if emitted != Rgb::ZERO && !walk.tells_no_emission() {
             walk.sum += walk.weight * emitted * self.share_of_meeting(world, hit, walk);
         }
         if walk.segment >= self.depth || !walk.arrives(bsdf) {
@@ -314,7 +325,7 @@ impl Path {
 
     /// Asks lights and leaves the surface, along all ways of the branches where it is the one that branches.
     fn go_on(&self, world: &World, hit: &Hit<'_>, bsdf: &Bsdf, walk: &mut Walk<'_>) -> Sampled<bool> {
-        let spreads = bsdf.has_lobes() && !walk.stage.is_covered();
+        let spreads = bsdf.has_lobes() && walk.stage.asks(bsdf.has_base());
         let n = if spreads { std::mem::replace(&mut walk.branches, 1) } else { 1 };
         let odds = bsdf.odds();
         let (one_way, one_light) = (odds.are_certain(), self.choice.is_certain());
@@ -334,11 +345,13 @@ impl Path {
         let way = |i| bsdf.bounce(odds, lobe(i), ways.point(i, n));
         if n == 1 {
             let chosen = way(0);
+            // What is told is told where no way leads on, too.
+            let is_known = self.is_known(world, hit, bsdf, walk);
             let Some(bounce) = &chosen else { return Ok(false) };
-            if self.is_known(world, hit, bsdf, walk) {
+            if is_known {
                 walk.kept = bounce.density.map_or(Rgb::ONE, |_| bsdf.beside_matt(bounce.direction));
             }
-            let goes_on = self.has_shine || walk.kept != Rgb::ZERO;
+            let goes_on = self.finds_lamps || walk.kept != Rgb::ZERO;
             return Ok(goes_on && walk.leave(hit, bsdf, bounce));
         }
         for bounce in (0..n).filter_map(way) {
@@ -394,8 +407,14 @@ impl Path {
 
     /// How much of a surface's emission counts that a ray met: its share beside what asking the light gives.
     fn share_of_meeting(&self, world: &World, hit: &Hit<'_>, walk: &Walk<'_>) -> f64 {
+        let Some(i) = self.lights.of(world, hit.primitive) else {
+            // Photons do not come from it; what a record gathers is never what a lamp sends straight.
+            return if walk.stage == Stage::Gathered { 0.0 } else { 1.0 };
+        };
+        if walk.stage.is_covered() {
+            return 0.0;
+        }
         let Some(last) = &walk.last else { return 1.0 };
-        let Some(i) = self.lights.of(world, hit.primitive) else { return 1.0 };
         let distance = (hit.point - last.point).length();
         let share = self.share_beside_asking(i, last, walk.ray.direction, Some(&hit.surface_point()));
         share * self.lights.lights[i].dimming(distance)

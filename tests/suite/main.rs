@@ -3,6 +3,7 @@
 #![allow(clippy::disallowed_methods, clippy::unwrap_used, clippy::print_stdout, clippy::print_stderr)]
 
 mod accelerators;
+mod agreement;
 mod animation;
 mod balls;
 mod command;

@@ -133,6 +133,31 @@ fn spheres_in_one_another_light_each_other() {
 }
 
 #[test]
+fn planes_that_face_each_other_have_the_light_of_their_series() {
+    let world =
+        world(vec![object(plane(Y, 0.0), &glowing_and(1.0, 0.5)), object(plane(Y, 1.0), &diffuse(0.7))]);
+    let eye = 0.5 * Y;
+    for tracer in [TracerKind::Path, TracerKind::MonteCarlo, TracerKind::Photon] {
+        for (side, exact) in [(-0.5, 1.0 / 0.65), (0.5, 0.7 / 0.65)] {
+            agrees(by(tracer, &world, (eye, eye + DVec3::new(0.3, side, 0.1)), 8192), exact);
+        }
+    }
+}
+
+#[test]
+fn a_half_hidden_lamp_averages_the_product() {
+    // The near half of the lamp hides behind a wall; the share of it that is seen, times what all of it would bring, is 0.111.
+    let lamp = object(rect(DVec3::new(2.0, 1.0, 0.0), 2.0 * X, 0.5 * Z), &glowing(1.0));
+    let wall = object(rect(DVec3::new(0.0, 0.5, 0.0), X, 5.0 * Z), &diffuse(0.0));
+    let world = world(vec![object(plane(Y, 0.0), &diffuse(1.0)), lamp, wall]);
+    for tracer in [TracerKind::Path, TracerKind::MonteCarlo] {
+        let (found, error) = by(tracer, &world, (DVec3::new(1e-4, 1e-3, 0.0), DVec3::ZERO), 4096);
+        near(found, 0.008399, 3.0 * error + 1e-5);
+        assert!(error < 1e-4, "{error}");
+    }
+}
+
+#[test]
 fn a_white_box_has_the_radiosity_of_its_form_factors() {
     let centre = DVec3::splat(0.5);
     let floor = DVec3::new(0.5, 0.0, 0.5);

@@ -88,6 +88,21 @@ fn sunlight_through_glass_is_found_though_no_path_can() {
 }
 
 #[test]
+fn a_slab_lets_by_a_point_of_light_with_all_its_inner_bounces() {
+    // So wide that nothing comes back from its sides, which mirror it all to the axis.
+    let slab = cuboid(DVec3::new(-50.0, 1.0, -50.0), DVec3::new(50.0, 2.0, 50.0));
+    // So dark that what the slab mirrors back to it is nothing.
+    let albedo = 1e-3;
+    let floor = object(rect(DVec3::ZERO, 3.0 * X, -3.0 * Z), &diffuse(albedo));
+    let world = world(vec![floor, object(slab, &glass(1.5)), point(3.0 * Y, 1.0)]);
+    let near_axis: Vec<DVec3> =
+        (0..64).map(|i| DVec3::new(f64::from(i % 8) - 3.5, 0.0, f64::from(i / 8) - 3.5) / 20.0).collect();
+    let found = by(|seed| photons(24, seed), &world, 0.9 * Y, &near_axis) * PI / albedo;
+    // Without its inner bounces 0.129600; without the slab 0.111111.
+    assert!((found - 0.129692).abs() < 0.01 * 0.129692, "{found}");
+}
+
+#[test]
 fn photons_and_paths_agree_where_glass_gathers_the_light_of_a_lamp() {
     let coated = layered(0.6, |l| {
         l.reflect = Texture::number(0.05);

@@ -109,6 +109,19 @@ fn penumbrae_have_their_closed_form() {
 }
 
 #[test]
+fn an_edge_cuts_off_its_part_of_a_far_disc() {
+    // A disc of radius 1 a thousand away, cut half-way by an edge whose shadow lies at s.
+    for (s, exact) in [(-0.9, 0.981307), (-0.5, 0.804499), (0.0, 0.5), (0.5, 0.195501), (0.9, 0.018693)] {
+        let radiance = 1e6;
+        let light = area(disc(1000.0 * Y, -Y, 1.0), radiance, 65536);
+        let edge = rect(DVec3::new(s / 2.0 - 50.0, 500.0, 0.0), 50.0 * X, 50.0 * Z);
+        let world = world(vec![object(plane(Y, 0.0), &diffuse(1.0)), light, object(edge, &diffuse(0.0))]);
+        // (R/d)² of the whole disc, to a millionth.
+        near(from_above(&world, 0.0, 0.0), exact, 1e-3);
+    }
+}
+
+#[test]
 fn a_wall_hides_its_half_of_the_sky() {
     for (d, exact) in [(0.1, 0.549752), (0.5, 0.723607), (1.0, 0.853553), (2.0, 0.947214)] {
         let wall = rect(DVec3::new(d, 0.5, 0.0), 0.5 * Y, 1e5 * Z);
