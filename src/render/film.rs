@@ -64,6 +64,12 @@ pub struct Taken {
     pub clamped: Clamped,
 }
 
+/// Radiance with no colour above `most`, dimmed as a whole so that its hue stays; not what is not finite.
+pub fn dimmed(most: f64, radiance: Rgb) -> Rgb {
+    let brightest = radiance.max_element();
+    if radiance.is_finite() && brightest > most { radiance * (most / brightest) } else { radiance }
+}
+
 /// What was taken from samples that were brighter than asked for.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Clamped {
@@ -76,22 +82,17 @@ pub struct Clamped {
 }
 
 impl Clamped {
-    /// A sample with no colour above `most`, dimmed as a whole so that its hue stays. One that is not finite is left to whoever
-    /// counts those.
-    pub fn at_most(&mut self, most: f64, radiance: Rgb) -> Rgb {
-        if !radiance.is_finite() {
-            return radiance;
+    /// Notes what was left of a sample. One that is not finite is left to whoever counts those.
+    pub fn note(&mut self, traced: Rgb, left: Rgb) {
+        if !traced.is_finite() {
+            return;
         }
-        let light = luminance(radiance);
+        let light = luminance(traced);
         self.all += in_parts(light);
-        let brightest = radiance.max_element();
-        if brightest <= most {
-            return radiance;
+        if left != traced {
+            self.samples += 1;
+            self.taken += in_parts(light - luminance(left));
         }
-        let left = most / brightest;
-        self.samples += 1;
-        self.taken += in_parts(light * (1.0 - left));
-        radiance * left
     }
 
     /// The share of all light that was taken, 0 … 1.
@@ -302,9 +303,14 @@ mod tests {
     #[test]
     fn a_clamp_keeps_the_hue_and_tells_what_it_took() {
         let mut clamped = Clamped::default();
-        assert_eq!(clamped.at_most(2.0, Rgb::splat(1.0)), Rgb::splat(1.0));
-        assert_eq!(clamped.at_most(2.0, Rgb::new(8.0, 4.0, 0.0)), Rgb::new(2.0, 1.0, 0.0));
-        assert_eq!(clamped.at_most(2.0, Rgb::splat(f64::INFINITY)), Rgb::splat(f64::INFINITY));
+        let mut at_most = |most, radiance| {
+            let left = dimmed(most, radiance);
+            clamped.note(radiance, left);
+            left
+        };
+        assert_eq!(at_most(2.0, Rgb::splat(1.0)), Rgb::splat(1.0));
+        assert_eq!(at_most(2.0, Rgb::new(8.0, 4.0, 0.0)), Rgb::new(2.0, 1.0, 0.0));
+        assert_eq!(at_most(2.0, Rgb::splat(f64::INFINITY)), Rgb::splat(f64::INFINITY));
         let (whole, bright) = (luminance(Rgb::ONE), luminance(Rgb::new(8.0, 4.0, 0.0)));
         assert_eq!(clamped.samples, 1);
         assert!((clamped.share() - 0.75 * bright / (whole + bright)).abs() < 1e-8, "{}", clamped.share());

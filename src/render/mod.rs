@@ -1,7 +1,6 @@
 //! Pictures: rays from a camera, radiance by a tracer, sums on a film, files on disk.
 
 use crate::scene::{Rgb, TracerKind};
-use crate::world::light::Ball;
 use crate::world::{Ray, World};
 
 /// A way to find the radiance that arrives along a ray. Made by its constructor from a world, so that what it must prepare
@@ -16,12 +15,14 @@ pub trait Tracer: Sync {
         Rgb::ZERO
     }
 
-    /// Balls around what emits so much that its emission is worth finding apart where its outline is seen. None where the tracer
-    /// does not tell it apart.
-    fn lamps(&self) -> &[Ball] {
-        &[]
+    /// What emits so much that its emission is worth finding apart where its outline is seen. Nothing where the tracer does not tell it
+    /// apart.
+    fn outlines(&self) -> &Outlines {
+        &outline::NONE
     }
 }
+
+pub use outline::Outlines;
 
 pub mod adaptive;
 pub mod camera;
@@ -60,6 +61,6 @@ pub fn tracer(
             Box::new(path::Path::with_roulette(world, view, settings, watch)?.branching())
         }
         TracerKind::Irradiance => Box::new(path::Path::with_records(world, view, settings, watch)?),
-        TracerKind::Photon => Box::new(path::Path::with_photons(world, settings, watch)?),
+        TracerKind::Photon => Box::new(path::Path::with_photons(world, view, settings, watch)?),
     })
 }

@@ -4,18 +4,22 @@
 //!
 //! Which pixels these are is asked along a few rays that their samples know nothing of. So the choice adds no bias, and what falls between
 //! these rays is only as noisy as if it had not been asked.
+//!
+//! There are fewer of these rays the more of the picture is outlines, and none where it is full of them: there other light is as much of its noise.
 
 use super::camera::RIM;
+use super::film::dimmed;
 use super::filter;
-use super::pixel::corner;
+use super::pixel::{corner, spread};
 use super::sampler::{PointSet, RayCounts, Sampler, rows};
 use super::settings::ResolvedSettings;
-use super::tiles::Picture;
+use super::tiles::{Picture, on_threads};
 use crate::math::elementary::exp2;
 use crate::scene::{Rgb, Texture};
 use crate::world::light::{Ball, Targets};
 use crate::world::{Ray, RayKind, World};
 use glam::DVec2;
+use rayon::prelude::*;
 
 /// Rays along which a pixel is asked whether an outline crosses it.
 const PROBES: u32 = 16;
@@ -26,38 +30,83 @@ const SPREAD: f64 = 1.5;
 /// Rays of each sample for what is seen to emit, at the most: about as many as ten paths take, in one pixel of a thousand.
 const RAYS: u32 = 64;
 
-/// Radiance that is shown as white at an exposure of 0: an edge that differs by less is no worse than those of all that is lit.
-const WHITE: f64 = 1.0;
+/// Rays of a sample for what is seen to emit, on average over the picture, at the most.
+const BUDGET: f64 = 2.0;
 
-/// Balls around all that a camera may see emit more than white. None of what has no bounds.
-pub fn lamps(world: &World, settings: &ResolvedSettings) -> Vec<Ball> {
-    let white = white(settings);
-    let balls = world.balls_of(RayKind::Camera, |material| match &material.layers().emit {
-        Texture::Constant(radiance) => radiance.max_element() > white,
-        Texture::Pattern(_) => true,
-    });
-    Targets::new(balls.unwrap_or_default(), world.ball()).balls().to_vec()
+/// Pixels by which that average is told.
+const PIXELS: u32 = 1 << 10;
+
+/// Fewer rays of a sample are not worth their own.
+const FEWEST: u32 = 4;
+
+/// Radiance that differs by less at an exposure of 0 makes no edge that is worse than those of all that is lit: two stops more than white.
+const BRIGHT: f64 = 4.0;
+
+/// What a tracer tells apart where its outline is seen.
+#[derive(Debug, Default)]
+pub struct Outlines {
+    /// Around all bright things that a camera may see emit. None where some of that has no bounds.
+    lamps: Vec<Ball>,
+    /// Rays of a sample at the most; a power of two, or 0.
+    most: u32,
 }
 
+/// Of a tracer that tells no emission apart.
+pub static NONE: Outlines = Outlines { lamps: Vec::new(), most: 0 };
+
+impl Outlines {
+    /// Of what shines in a world, where there is no telling how much of a picture is outlines.
+    pub fn new(world: &World, settings: &ResolvedSettings) -> Outlines {
+        let bright = BRIGHT * white(settings);
+        let balls = world.balls_of(RayKind::Camera, |material| match &material.layers().emit {
+            Texture::Constant(radiance) => radiance.max_element() >= bright,
+            Texture::Pattern(_) => true,
+        });
+        let lamps = Targets::new(balls.unwrap_or_default(), world.ball()).balls().to_vec();
+        Outlines { lamps, most: RAYS }
+    }
+
+    /// With no more rays than a picture can bear, whose tracer tells these outlines, by some of its pixels. Crops leave no trace in it.
+    pub fn within_budget(&self, picture: Picture<'_>) -> Outlines {
+        let [width, height] = picture.settings.size;
+        let n = PIXELS.min(width.saturating_mul(height));
+        let wanted = |i| rays(picture, spread(i, picture.settings.size), &mut RayCounts::default());
+        let wanted: Vec<u32> = match self.lamps.is_empty() {
+            true => Vec::new(),
+            false => on_threads(picture.settings.threads, || (0..n).into_par_iter().map(wanted).collect()),
+        };
+        let mean = |most: u32| {
+            let sum: u64 = wanted.iter().map(|rays| u64::from(*rays.min(&most))).sum();
+            sum as f64 / f64::from(n)
+        };
+        let halves = std::iter::successors(Some(RAYS), |most| Some(most / 2));
+        let most = halves.take_while(|most| *most >= FEWEST).find(|most| mean(*most) <= BUDGET);
+        Outlines { lamps: self.lamps.clone(), most: most.unwrap_or(0) }
+    }
+}
+
+/// The radiance that is shown as white.
 fn white(settings: &ResolvedSettings) -> f64 {
-    WHITE / exp2(settings.exposure)
+    1.0 / exp2(settings.exposure)
 }
 
-/// How many rays of each sample find what a pixel is seen to emit: none where no outline of a lamp is seen in it, else as many as leave no more noise
-/// than the edge of white paper has, up to [`RAYS`]; a power of two. The rays that ask are counted.
+/// How many rays of each sample find what it is seen to emit: none where no outline of a lamp is seen in it, or where its only sample
+/// is to go through its centre; else as many as leave no more noise than the edge of white paper has; a power of two. The rays that ask are counted.
 pub fn rays(picture: Picture<'_>, pixel: [u32; 2], counts: &mut RayCounts) -> u32 {
-    if !may_show(picture, pixel, picture.tracer.lamps()) {
+    let Outlines { lamps, most } = picture.tracer.outlines();
+    if *most == 0 || picture.settings.samples == 1 || !may_show(picture, pixel, lamps) {
         return 0;
     }
     let [x, y] = pixel;
     let mut sampler = Sampler::new(picture.settings.seed, x, y | rows::OUTLINE, 0);
     let rays = Rays::of(picture, pixel, PROBES, &mut sampler);
     let probes = (0..PROBES).map(|i| rays.emission(i, SPREAD, &mut sampler).max_element());
-    let [least, most] = probes.fold([f64::INFINITY, 0.0], |[least, most], x| [x.min(least), x.max(most)]);
+    let [darkest, brightest] =
+        probes.fold([f64::INFINITY, 0.0], |[least, most], x| [x.min(least), x.max(most)]);
     *counts += sampler.rays;
-    let contrast = (most - least) / white(picture.settings);
+    let contrast = (brightest - darkest) / white(picture.settings);
     // Of n rays the variance is the nth part of that of one.
-    if contrast > 1.0 { ((contrast * contrast) as u32).min(RAYS).next_power_of_two() } else { 0 }
+    if contrast >= BRIGHT { ((contrast * contrast) as u32).min(*most).next_power_of_two() } else { 0 }
 }
 
 fn may_show(picture: Picture<'_>, pixel: [u32; 2], lamps: &[Ball]) -> bool {
@@ -65,11 +114,27 @@ fn may_show(picture: Picture<'_>, pixel: [u32; 2], lamps: &[Ball]) -> bool {
     beam.is_some_and(|beam| lamps.iter().any(|ball| beam.may_meet(ball)))
 }
 
+/// What a pixel is seen to emit, and what is left of it where none of the rays may bring more than a clamp allows.
+pub struct Emission {
+    pub all: Rgb,
+    pub left: Rgb,
+}
+
 /// What is seen to emit in a pixel, at the next sample.
-pub fn emission(picture: Picture<'_>, pixel: [u32; 2], sampler: &mut Sampler) -> Rgb {
+pub fn emission(picture: Picture<'_>, pixel: [u32; 2], sampler: &mut Sampler) -> Emission {
     let n = sampler.emission_rays;
+    let mut found = Emission { all: Rgb::ZERO, left: Rgb::ZERO };
+    if n == 0 {
+        return found;
+    }
     let rays = Rays::of(picture, pixel, n, sampler);
-    (0..n).map(|i| rays.emission(i, 1.0, sampler)).sum::<Rgb>() / f64::from(n)
+    for i in 0..n {
+        let emitted = rays.emission(i, 1.0, sampler);
+        found.all += emitted;
+        found.left += picture.settings.clamp.map_or(emitted, |most| dimmed(most, emitted));
+    }
+    let share = 1.0 / f64::from(n);
+    Emission { all: found.all * share, left: found.left * share }
 }
 
 /// Rays of one sample through a pixel, and through the lens where there is one.

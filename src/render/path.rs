@@ -18,14 +18,14 @@ use super::Tracer;
 use super::camera::View;
 use super::irradiance::Records;
 use super::medium::Inside;
-use super::outline;
+use super::outline::Outlines;
 use super::photon::Maps;
 use super::sampler::Sampler;
 use super::settings::ResolvedSettings;
-use super::tiles::Watch;
+use super::tiles::{Picture, Watch};
 use crate::scene::{Material, Rgb};
 use crate::world::bsdf::{Bounce, Bsdf, Odds};
-use crate::world::light::{Ball, Choice, Lights};
+use crate::world::light::{Choice, Lights};
 use crate::world::texture::Sampled;
 use crate::world::{Hit, Ray, RayKind, SurfacePoint, World};
 pub(super) use gather::Matt;
@@ -48,8 +48,7 @@ pub struct Path {
     records: Option<Records>,
     /// True where a way on may find light of lamps: where it may meet what shines, or come to a rough mirror or glass that asks them.
     finds_lamps: bool,
-    /// Around what is so bright that its outline asks for rays of its own.
-    lamps: Vec<Ball>,
+    outlines: Outlines,
     roulette: Roulette,
 }
 
@@ -164,9 +163,16 @@ impl Path {
             photons,
             records,
             finds_lamps,
-            lamps: outline::lamps(world, settings),
+            outlines: Outlines::new(world, settings),
             roulette,
         }
+    }
+
+    /// The same with no more rays for outlines than a picture by this view pays for.
+    fn seen(world: &World, view: &View, settings: &ResolvedSettings) -> Path {
+        let path = Path::new(world, settings);
+        let outlines = path.outlines.within_budget(Picture { world, view, tracer: &path, settings });
+        Path { outlines, ..path }
     }
 
     /// Paths that end by chance where that pays. None where learning it is called off.
@@ -176,7 +182,7 @@ impl Path {
         settings: &ResolvedSettings,
         watch: Watch<'_>,
     ) -> Option<Path> {
-        let path = Path::new(world, settings);
+        let path = Path::seen(world, view, settings);
         let roulette = Roulette::learned(world, &path, view, settings, watch)?;
         Some(Path { roulette, ..path })
     }
@@ -187,8 +193,13 @@ impl Path {
     }
 
     /// Paths that photons end. None where shooting them is called off.
-    pub fn with_photons(world: &World, settings: &ResolvedSettings, watch: Watch<'_>) -> Option<Path> {
-        let path = Path::new(world, settings);
+    pub fn with_photons(
+        world: &World,
+        view: &View,
+        settings: &ResolvedSettings,
+        watch: Watch<'_>,
+    ) -> Option<Path> {
+        let path = Path::seen(world, view, settings);
         let maps = Maps::new(world, &path.lights, &path.choice, settings, watch)?;
         Some(Path { photons: Some(maps), ..path })
     }
@@ -200,7 +211,7 @@ impl Path {
         settings: &ResolvedSettings,
         watch: Watch<'_>,
     ) -> Option<Path> {
-        let path = Path::new(world, settings);
+        let path = Path::seen(world, view, settings);
         let records = Records::new(world, &path, view, settings, watch)?;
         Some(Path { records: Some(records), ..path })
     }
@@ -227,8 +238,8 @@ impl Tracer for Path {
         })
     }
 
-    fn lamps(&self) -> &[Ball] {
-        &self.lamps
+    fn outlines(&self) -> &Outlines {
+        &self.outlines
     }
 }
 

@@ -4,7 +4,7 @@
 use super::adaptive::Blocks;
 use super::camera::View;
 use super::features::{FeatureSum, Layers};
-use super::film::{Fault, Film, PixelSum, Report};
+use super::film::{Fault, Film, PixelSum, Report, dimmed};
 use super::filter;
 use super::outline;
 use super::sampler::Sampler;
@@ -93,17 +93,15 @@ impl Pixel {
     /// Takes the next sample by its numbers, and turns them to the one after it.
     fn take(&mut self, picture: Picture<'_>, sampler: &mut Sampler, report: &mut Report) -> Rgb {
         let ray = camera_ray(picture, self.place, sampler);
-        let emission = match sampler.emission_rays {
-            0 => Rgb::ZERO,
-            _ => outline::emission(picture, self.place, sampler),
-        };
-        let radiance = match ray {
-            Some(ray) => emission + picture.tracer.radiance(picture.world, ray, sampler),
-            None => emission,
-        };
+        let emission = outline::emission(picture, self.place, sampler);
+        let found = ray.map_or(Rgb::ZERO, |ray| picture.tracer.radiance(picture.world, ray, sampler));
         let radiance = match picture.settings.clamp {
-            Some(most) => report.taken.clamped.at_most(most, radiance),
-            None => radiance,
+            Some(most) => {
+                let left = emission.left + dimmed(most, found);
+                report.taken.clamped.note(emission.all + found, left);
+                left
+            }
+            None => emission.all + found,
         };
         let before = self.sum.non_finite;
         self.sum.add(radiance);
@@ -138,6 +136,13 @@ fn camera_ray(picture: Picture<'_>, pixel: [u32; 2], sampler: &mut Sampler) -> O
         _ => filter::place(picture.settings.filter, sampler.next_2d()),
     };
     ray_through(picture.view, corner(pixel) + within, sampler)
+}
+
+/// Pixel number i of some that lie evenly over a picture (the lattice of the plastic number).
+pub(super) fn spread(i: u32, size: [u32; 2]) -> [u32; 2] {
+    const STEP: DVec2 = DVec2::new(0.754_877_666_246_692_7, 0.569_840_290_998_053_3);
+    let place = (STEP * f64::from(i) + 0.5).fract_gl() * DVec2::from(size.map(f64::from));
+    [place.x as u32, place.y as u32]
 }
 
 /// The pixel's top left corner.

@@ -19,7 +19,10 @@ const Y: DVec3 = DVec3::Y;
 const Z: DVec3 = DVec3::Z;
 
 /// Width and height of the pictures.
-const SIZE: u32 = 16;
+const SIZE: u32 = 32;
+
+/// Of the lamp, at the distance 1.
+const RADIUS: f64 = 0.1;
 
 const RADIANCE: f64 = 40.0;
 
@@ -39,7 +42,7 @@ fn eye() -> Camera {
 /// A round lamp before a wall that sends on a little of its light.
 fn lamp(material: &Arc<Material>) -> World {
     world(vec![
-        object(disc(DVec3::new(0.05, 0.02, -1.0), Z, 0.3), material),
+        object(disc(DVec3::new(0.05, 0.02, -1.0), Z, RADIUS), material),
         object(rect(-1.5 * Z, 3.0 * X, 3.0 * Y), &glowing_and(0.5, 0.5)),
     ])
 }
@@ -60,17 +63,17 @@ fn plain(world: &World, camera: &Camera, settings: &ResolvedSettings) -> Film {
 
 /// The share of a pixel that the disc fills, by a fine grid.
 fn share(x: u32, y: u32) -> f64 {
-    let n = 200;
+    let n = 100;
     let at =
         |i: u32, sub: u32| (f64::from(i) + (f64::from(sub) + 0.5) / f64::from(n)) / f64::from(SIZE) - 0.5;
-    let inside = |i: u32, j: u32| (at(x, i) - 0.05).hypot(-at(y, j) - 0.02) < 0.3;
+    let inside = |i: u32, j: u32| (at(x, i) - 0.05).hypot(-at(y, j) - 0.02) < RADIUS;
     let count = (0..n).map(|j| (0..n).filter(|&i| inside(i, j)).count()).sum::<usize>();
     count as f64 / f64::from(n * n)
 }
 
 #[test]
 fn the_edge_of_a_lamp_is_as_bright_as_the_share_of_a_pixel_that_it_fills() {
-    let alone = world(vec![object(disc(DVec3::new(0.05, 0.02, -1.0), Z, 0.3), &glowing(RADIANCE))]);
+    let alone = world(vec![object(disc(DVec3::new(0.05, 0.02, -1.0), Z, RADIUS), &glowing(RADIANCE))]);
     for tracer in [TracerKind::Path, TracerKind::MonteCarlo, TracerKind::Irradiance, TracerKind::Photon] {
         let film = picture(&alone, &eye(), &of(tracer, 2, 1));
         for (x, y) in (0..SIZE).flat_map(|y| (0..SIZE).map(move |x| (x, y))) {
@@ -119,12 +122,12 @@ fn rays_of_its_own_leave_the_light_as_it_is_and_its_noise_a_seventh() {
 }
 
 #[test]
-fn what_is_no_brighter_than_white_or_hidden_takes_no_rays_of_its_own() {
+fn what_is_not_much_brighter_than_white_or_hidden_takes_no_rays_of_its_own() {
     let mut hidden = Object::new(disc(-Z, Z, 0.3), SPAN);
     hidden.material = Some(glowing(RADIANCE));
     hidden.hide.camera = true;
     let walls = || object(rect(-1.5 * Z, 3.0 * X, 3.0 * Y), &diffuse(0.5));
-    let rooms = [lamp(&glowing_and(0.9, 0.3)), world(vec![walls(), Node::Object(Arc::new(hidden))])];
+    let rooms = [lamp(&glowing_and(3.9, 0.3)), world(vec![walls(), Node::Object(Arc::new(hidden))])];
     for room in rooms {
         let (film, before) = (picture(&room, &eye(), &paths(4, 7)), plain(&room, &eye(), &paths(4, 7)));
         assert_eq!(film.pixels, before.pixels);
@@ -133,8 +136,8 @@ fn what_is_no_brighter_than_white_or_hidden_takes_no_rays_of_its_own() {
 }
 
 #[test]
-fn an_exposure_decides_what_is_brighter_than_white() {
-    let room = lamp(&glowing_and(0.9, 0.3));
+fn an_exposure_decides_what_is_much_brighter_than_white() {
+    let room = lamp(&glowing_and(3.9, 0.3));
     let rays = |exposure| {
         let settings = ResolvedSettings { exposure, ..paths(4, 7) };
         picture(&room, &eye(), &settings).report.rays.camera
@@ -146,18 +149,47 @@ fn an_exposure_decides_what_is_brighter_than_white() {
 fn edges_show_neither_crops_nor_passes() {
     let room = lamp(&glowing_and(RADIANCE, 0.3));
     let whole = picture(&room, &eye(), &paths(4, 3));
-    let crop = Crop { x: 2, y: 3, width: 9, height: 8 };
+    let crop = Crop { x: 12, y: 11, width: 9, height: 8 };
     let part = picture(&room, &eye(), &ResolvedSettings { crop, ..paths(4, 3) });
     for (x, y) in (0..8).flat_map(|y| (0..9).map(move |x| (x, y))) {
-        assert_eq!(part.pixel(x, y), whole.pixel(x + 2, y + 3));
+        assert_eq!(part.pixel(x, y), whole.pixel(x + 12, y + 11));
     }
     let (settings, camera) = (paths(4, 3), eye());
     let view = View::new(&camera, settings.size).expect("a camera that sees");
-    let tracer = tracer_from(&settings, &room, camera.eye, camera.look_at);
+    let tracer = prepared(settings.tracer, &room, &view, &settings);
     let mut passes =
         Passes::new(Picture { world: &room, view: &view, tracer: &*tracer, settings: &settings });
     for to in [1, 3, 4] {
         assert!(passes.advance(to, &(), &AtomicBool::new(false)));
     }
     assert_eq!(passes.film().pixels, whole.pixels);
+}
+
+#[test]
+fn the_only_sample_goes_through_the_centre_of_its_pixel() {
+    let room = lamp(&glowing_and(RADIANCE, 0.3));
+    assert_eq!(picture(&room, &eye(), &paths(1, 3)).pixels, plain(&room, &eye(), &paths(1, 3)).pixels);
+}
+
+#[test]
+fn a_clamp_dims_each_ray_and_not_their_mean() {
+    let room = lamp(&glowing(RADIANCE));
+    let clamped = |seed| ResolvedSettings { clamp: Some(4.0), ..paths(4, seed) };
+    let apart = statistics(|seed| picture(&room, &eye(), &clamped(seed)));
+    let (mean, variance, _) = statistics(|seed| plain(&room, &eye(), &clamped(seed)));
+    near(apart.0, mean, 3.0 * (apart.1 + variance).sqrt());
+    let share = |film: Film| film.report.taken.clamped.share();
+    near(share(picture(&room, &eye(), &clamped(1))), share(plain(&room, &eye(), &clamped(1))), 0.01);
+}
+
+#[test]
+fn a_picture_full_of_edges_takes_few_rays_more() {
+    let lamps = (0..900).map(|i| {
+        let (x, y) = (f64::from(i % 30), f64::from(i / 30));
+        object(disc(DVec3::new(x / 30.0 - 0.5, y / 30.0 - 0.5, -1.0), Z, 0.01), &glowing(RADIANCE))
+    });
+    let (room, n) = (world(lamps.collect()), f64::from(SIZE * SIZE * 64));
+    let [apart, before] = [picture(&room, &eye(), &paths(64, 3)), plain(&room, &eye(), &paths(64, 3))]
+        .map(|film| film.report.rays.camera as f64 / n);
+    assert!(before <= 1.0 && apart <= 3.5, "{apart} rays of the camera each sample, {before} before");
 }

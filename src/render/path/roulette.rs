@@ -9,7 +9,7 @@
 use super::{Path, Walk};
 use crate::math::colour::mean;
 use crate::render::camera::View;
-use crate::render::pixel::ray_through;
+use crate::render::pixel::{corner, ray_through, spread};
 use crate::render::sampler::{Sampler, rows};
 use crate::render::settings::ResolvedSettings;
 use crate::render::tiles::{Watch, on_threads};
@@ -165,13 +165,10 @@ struct Left {
 impl Lesson<'_> {
     /// What comes of one of the pixels, which a lattice spreads evenly over the picture (Roberts's R₂).
     fn pixel(&self, i: u32) -> Tally {
-        const STEP: DVec2 = DVec2::new(0.754_877_666_246_692_7, 0.569_840_290_998_053_3);
-        let [width, height] = self.settings.size.map(f64::from);
-        let place = (STEP * f64::from(i) + 0.5).fract_gl() * DVec2::new(width, height);
+        let place = corner(spread(i, self.settings.size));
         let mut tally = Tally::default();
         let [one, other] = [0, 1].map(|set| {
-            let samples =
-                (0..SAMPLES).map(|sample| self.sample(place.floor(), [2 * i + set, sample], &mut tally));
+            let samples = (0..SAMPLES).map(|sample| self.sample(place, [2 * i + set, sample], &mut tally));
             samples.sum::<Rgb>() / f64::from(SAMPLES)
         });
         let n = f64::from(SAMPLES);
