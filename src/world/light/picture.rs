@@ -28,6 +28,8 @@ pub struct PictureSky {
 /// The sphere cut into rows and columns, each cell with a weight: about its power.
 #[derive(Debug)]
 struct Cells {
+    /// Texels along each side of a cell.
+    side: u32,
     /// Where columns begin and end, in turns from the left edge.
     turns: Vec<f64>,
     /// Cosines of the angles from up at which rows begin and end.
@@ -77,8 +79,8 @@ impl PictureSky {
     /// Density per solid angle with which [`PictureSky::choose`] comes to a unit direction.
     pub fn density(&self, direction: DVec3) -> f64 {
         let at = self.place(direction);
-        let row = cell_of(at.y, self.image.height(), self.cells.rows());
-        let column = cell_of(at.x, self.image.width(), self.cells.columns());
+        let row = cell_of(at.y, self.image.height(), self.cells.side);
+        let column = cell_of(at.x, self.image.width(), self.cells.side);
         self.cells.density(row, column)
     }
 
@@ -124,11 +126,10 @@ fn texels_per_cell(width: u32, height: u32) -> u32 {
     (1..).find(|k| cells(*k) <= MOST_CELLS).expect("one cell is few enough")
 }
 
-/// The cell that a place of 0 … 1 along a side of n texels falls into.
-fn cell_of(place: f64, n: u32, cells: usize) -> usize {
+/// The cell of so many texels that a place of 0 … 1 along a side of n texels falls into.
+fn cell_of(place: f64, n: u32, texels: u32) -> usize {
     let texel = ((place * f64::from(n)) as u32).min(n - 1);
-    let per_cell = n.div_ceil(cells as u32);
-    (texel / per_cell) as usize
+    (texel / texels) as usize
 }
 
 impl Cells {
@@ -156,7 +157,7 @@ impl Cells {
             total += running(row);
             row_sums.push(total);
         }
-        Cells { turns, cosines, row_sums, sums: weights }
+        Cells { side: k, turns, cosines, row_sums, sums: weights }
     }
 
     fn rows(&self) -> usize {
@@ -311,7 +312,10 @@ mod tests {
     fn several_texels_share_a_cell_in_large_pictures() {
         assert_eq!(texels_per_cell(2048, 1024), 1);
         assert_eq!(texels_per_cell(4096, 2048), 2);
-        assert_eq!((cell_of(0.0, 5, 3), cell_of(0.5, 5, 3), cell_of(1.0, 5, 3)), (0, 1, 2));
+        assert_eq!((cell_of(0.0, 5, 2), cell_of(0.5, 5, 2), cell_of(1.0, 5, 2)), (0, 1, 2));
+        // Nine texels are two cells of four and one of one, not three of three.
+        let cells = (0..9).map(|texel| cell_of((f64::from(texel) + 0.5) / 9.0, 9, 4));
+        assert_eq!(cells.collect::<Vec<_>>(), [0, 0, 0, 0, 1, 1, 1, 1, 2]);
     }
 
     #[test]

@@ -279,8 +279,9 @@ fn choose<'a>(pieces: &'a [Piece], sums: &[f64], u: DVec2) -> (&'a Piece, f64, D
         return (piece, 1.0, u);
     }
     let total = sums[sums.len() - 1];
-    let at = u.x * total;
-    let i = sums.partition_point(|s| *s <= at).min(pieces.len() - 1);
+    // Below the total, so that the piece found has a share.
+    let at = (u.x * total).min(total.next_down());
+    let i = sums.partition_point(|s| *s <= at);
     let before = if i == 0 { 0.0 } else { sums[i - 1] };
     let weight = sums[i] - before;
     let rest = ((at - before) / weight).clamp(0.0, 1.0);
