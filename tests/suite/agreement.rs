@@ -3,7 +3,7 @@
 
 use crate::stage::*;
 use glam::DVec3;
-use ogee::render::settings::ResolvedSettings;
+use ogee::render::settings::{Crop, ResolvedSettings};
 use ogee::scene::*;
 use ogee::world::World;
 use std::sync::Arc;
@@ -298,5 +298,19 @@ fn without_indirect_light_whitted_and_paths_agree_and_raycast_lacks_shadows_alon
                 .x
         };
         near(of(TracerKind::Path, 256), of(TracerKind::Whitted, 256), 2e-3);
+    }
+}
+
+#[test]
+fn a_crop_has_the_pixels_of_the_whole_picture_by_every_tracer() {
+    let (world, eye) = cornell();
+    for tracer in GLOBAL.into_iter().chain([TracerKind::Whitted, TracerKind::Raycast]) {
+        let whole = ResolvedSettings { tracer, samples: 4, ..settings([24, 20]) };
+        let crop = Crop { x: 8, y: 6, width: 9, height: 7 };
+        let of = |settings| picture(&world, &eye, &settings);
+        let (whole, part) = (of(whole), of(ResolvedSettings { crop, ..whole }));
+        for (x, y) in (0..7).flat_map(|y| (0..9).map(move |x| (x, y))) {
+            assert_eq!(part.pixel(x, y), whole.pixel(x + 8, y + 6), "{tracer:?}");
+        }
     }
 }

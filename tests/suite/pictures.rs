@@ -391,11 +391,16 @@ impl Tracer for Broken {
 
 #[test]
 fn samples_that_are_not_finite_are_left_out_counted_and_placed() {
-    let world = world(vec![object(plane(DVec3::Y, -1.0), &diffuse(0.5))]);
+    let world = world(vec![object(plane(-DVec3::Y, -1.0), &diffuse(0.5))]);
     let film = picture_by(&Broken, &world, &camera(DVec3::ZERO, -DVec3::Z, 90.0), &settings([31, 31]));
     assert!(film.pixels.iter().all(|p| p.is_finite()));
     assert_eq!(film.report.non_finite, 31);
-    assert_eq!(film.report.first_non_finite.unwrap().pixel, [15, 0]);
+    let first = film.report.first_non_finite.unwrap();
+    assert_eq!(
+        (first.pixel, first.span),
+        ([15, 0], Some(SPAN)),
+        "with the place in the scene of what was seen"
+    );
 }
 
 /// Cancels after the first tile.
