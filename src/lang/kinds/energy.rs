@@ -5,6 +5,7 @@
 //! colours they are made of, where they are made of constants; functions and pictures are not looked into.
 
 use crate::diag::{Code, Diagnostic};
+use crate::lang::display::number_to;
 use crate::lang::table::{Block, Context};
 use crate::math::elementary::{powf, powi, sin_cos};
 use crate::scene::{Fresnel, Layers, Lobe, Material, PatternKind, Rgb, Texture};
@@ -32,16 +33,13 @@ pub fn check(ctx: &mut dyn Context, material: &Material, block: &Block) {
         .into_iter()
         .filter(|n| block.has(n))
         .collect();
-    let said = Diagnostic::new(
-        Code::EnergyGain,
-        block.kind_span,
-        format!(
-            "this material returns {returned:.2} times the light it gets{of_what}: {:.0} % too much",
-            (returned - 1.0) * 100.0
-        ),
-    );
+    let times = written(returned);
+    let more = (returned < MANY).then(|| format!(": {:.0} % too much", (returned - 1.0) * 100.0));
+    let message =
+        format!("this material returns {times} times the light it gets{of_what}{}", more.unwrap_or_default());
+    let said = Diagnostic::new(Code::EnergyGain, block.kind_span, message);
     let said = match shares[..] {
-        [one] => said.hint(format!("a share is at most 1: divide `{one}` by {returned:.2}")),
+        [one] => said.hint(format!("a share is at most 1: divide `{one}` by {times}")),
         _ => said.hint(format!(
             "lower {} until their sum is at most 1",
             crate::lang::coerce::listed(&shares.iter().map(|s| format!("`{s}`")).collect::<Vec<_>>(), "and")
@@ -49,6 +47,13 @@ pub fn check(ctx: &mut dyn Context, material: &Material, block: &Block) {
     };
     let said = shares.iter().fold(said, |said, name| said.also(block.place(name), "counts"));
     ctx.report(said);
+}
+
+/// From so many times the light on, only its size is of use to a person.
+const MANY: f64 = 1000.0;
+
+fn written(returned: f64) -> String {
+    if returned < MANY { format!("{returned:.2}") } else { number_to(returned, 3) }
 }
 
 /// The greatest share of light that a material returns in any direction, per channel.
