@@ -25,7 +25,9 @@ impl Dialogue<'_> {
         let (figure, reply) = self.look(texts, first_line, |look| {
             // What was written, without the bracket around it.
             let Span { start, end, .. } = look.span;
-            look.span = Span { start: start + 1, end: end.saturating_sub(1).max(start + 1), ..look.span };
+            if request.expression[start as usize..].starts_with('[') {
+                look.span = Span { start: start + 1, end: (end - 1).max(start + 1), ..look.span };
+            }
             figure(look, request).map_err(|fault| look.sink.push(*fault)).ok()
         });
         (figure.filter(|_| !reply.failed), reply)

@@ -266,6 +266,7 @@ fn what_cannot_be_plotted_is_told_at_its_place_and_changes_nothing() {
         ("x => inf", " 2 │ :plot x => inf \n   ·       ────────\n"),
         ("x => x]", " 2 │ :plot x => x] \n   ·             ─\n"),
         ("x => (x", " 2 │ :plot x => (x"),
+        ("\"a]b\"", " 2 │ :plot \"a]b\" \n   ·       ─────\n"),
         ("x => sin(x), 0, inf", "between finite numbers"),
         ("x => inf", "none of its values here is finite"),
         ("x => sin(x) comb", "want a curve"),
