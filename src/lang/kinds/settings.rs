@@ -222,12 +222,12 @@ pub static RENDER: Kind = Kind {
 const LARGEST_SIDE: f64 = 65_535.0;
 
 fn render(ctx: &mut dyn Context, block: Block) -> Outcome {
-    let count = |name: &str| block.integer(name).map(|n| n.min(u64::from(u32::MAX)) as u32);
     let settings = RenderSettings {
         size: size(ctx, &block)?,
         tracer: block.word("tracer").map(tracer),
-        samples: count("samples"),
-        depth: count("depth"),
+        samples: count(ctx, &block, "samples")?,
+        // More segments than can be counted are without end.
+        depth: block.integer("depth").map(|n| n.min(u64::from(u32::MAX)) as u32),
         seed: block.integer("seed"),
         sampler: block.word("sampler").map(sampler),
         filter: block.word("filter").map(filter),
@@ -236,12 +236,20 @@ fn render(ctx: &mut dyn Context, block: Block) -> Outcome {
         exposure: block.number("exposure"),
         tonemap: block.word("tonemap").map(tonemap),
         background: block.colour("background"),
-        frames: count("frames"),
+        frames: count(ctx, &block, "frames")?,
         fps: block.number("fps"),
         span: Some(block.span),
         size_span: block.has("size").then(|| block.place("size")),
     };
     Ok(Value::Render(Arc::new(settings)))
+}
+
+fn count(ctx: &mut dyn Context, block: &Block, name: &str) -> Outcome<Option<u32>> {
+    let Some(n) = block.integer(name) else { return Ok(None) };
+    u32::try_from(n).map(Some).map_err(|_| {
+        let message = format!("{n} {name} are too many to be counted");
+        block.fault(ctx, Code::BadProperty, name, message, format!("at most {} are", u32::MAX))
+    })
 }
 
 fn size(ctx: &mut dyn Context, block: &Block) -> Outcome<Option<[u32; 2]>> {
