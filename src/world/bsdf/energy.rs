@@ -45,7 +45,7 @@ impl Lost {
             return 0.0;
         }
         let cosine = cosine.clamp(0.0, 1.0);
-        let (i, part) = split((cosine * (1.0 + self.alpha) / (cosine + self.alpha)).sqrt(), COLUMNS);
+        let (i, part) = place(self.alpha, cosine, COLUMNS);
         let along = |row: &[f64; COLUMNS]| row[i] + part * (row[i + 1] - row[i]);
         self.between(along(&LOST[self.row]), along(&LOST[self.row + 1]))
     }
@@ -75,6 +75,11 @@ impl Lost {
     fn between(&self, row: f64, next: f64) -> f64 {
         row + self.part * (next - row)
     }
+}
+
+/// Where a cosine lies among `n` points over μ = tα / (1 + α − t), t = (i/(n − 1))².
+fn place(alpha: f64, cosine: f64, n: usize) -> (usize, f64) {
+    split((cosine * (1.0 + alpha) / (cosine + alpha)).sqrt(), n)
 }
 
 /// The cell of `n` points over 0 … 1 that holds x, and how far in it x is.

@@ -6,6 +6,7 @@
 //! Both ways through are the same but for the squared index where (1 − c)(1 − Ē) = η² (1 − c′)(1 − Ē′), η seen from the rarer
 //! side. There c is taken to be the mean share that a facet reflects; so nearly all that the denser side loses is sent back.
 
+use super::losses::{DENSER, RARER, SILVERED};
 use super::{Losses, Lost, split};
 use crate::scene::Rgb;
 use crate::world::bsdf::fresnel;
@@ -30,7 +31,7 @@ pub struct Glass {
 /// What is lost, by its own sums or by the table.
 #[derive(Clone, Copy, Debug)]
 enum Known {
-    Own { losses: &'static Losses, alpha: f64 },
+    Own(&'static Losses),
     Table { cell: Cell, silvered: Lost },
 }
 
@@ -45,16 +46,16 @@ impl Glass {
     /// Of this α, for an index beyond the boundary over that on the side it is seen from; `silver` is reflected before all else. Where nothing
     /// else is known, a table tells what is lost, for indices up to 3.
     pub fn new(alpha: f64, eta: f64, silver: Rgb, own: Option<&'static Losses>) -> Glass {
-        let (side, denser) = if eta < 1.0 { (1, 1.0 / eta) } else { (0, eta) };
+        let (side, denser) = if eta < 1.0 { (DENSER, 1.0 / eta) } else { (RARER, eta) };
         let known = match own {
-            Some(losses) => Known::Own { losses, alpha },
+            Some(losses) => Known::Own(losses),
             None => Known::Table { cell: Cell::of(alpha, denser), silvered: Lost::by(alpha) },
         };
         let silver = silver.clamp(Rgb::ZERO, Rgb::ONE);
         let mut glass = Glass { known, side, silver, through: Rgb::ZERO };
         let mean = silver + (Rgb::ONE - silver) * fresnel::mean_of_dielectric(denser);
-        let [rarer, dense] = [0, 1].map(|side| glass.on_average(side));
-        let part = if side == 0 { Rgb::ONE } else { rarer / (dense * (denser * denser)) };
+        let [rarer, dense] = [RARER, DENSER].map(|side| glass.on_average(side));
+        let part = if side == RARER { Rgb::ONE } else { rarer / (dense * (denser * denser)) };
         glass.through = if dense.min_element() > 0.0 { (Rgb::ONE - mean) * part } else { Rgb::ZERO };
         glass
     }
@@ -87,21 +88,27 @@ impl Glass {
 
     fn lost(&self, side: usize, cosine: f64) -> Rgb {
         let cosine = cosine.clamp(0.0, 1.0);
-        self.mixed(match &self.known {
-            Known::Own { losses, alpha } => losses.at(side, *alpha, cosine),
-            Known::Table { cell, silvered } => [cell.at(side, cosine), silvered.at(cosine)],
+        self.mixed(side, |curve| match &self.known {
+            Known::Own(losses) => losses.at(curve, cosine),
+            Known::Table { silvered, .. } if curve == SILVERED => silvered.at(cosine),
+            Known::Table { cell, .. } => cell.at(curve, cosine),
         })
     }
 
     fn on_average(&self, side: usize) -> Rgb {
-        self.mixed(match &self.known {
-            Known::Own { losses, .. } => losses.on_average(side),
-            Known::Table { cell, silvered } => [cell.on_average(side), silvered.on_average()],
+        self.mixed(side, |curve| match &self.known {
+            Known::Own(losses) => losses.on_average(curve),
+            Known::Table { silvered, .. } if curve == SILVERED => silvered.on_average(),
+            Known::Table { cell, .. } => cell.on_average(curve),
         })
     }
 
-    fn mixed(&self, [bare, silvered]: [f64; 2]) -> Rgb {
-        (Rgb::ONE - self.silver) * bare + self.silver * silvered
+    /// By the curve of a side and, where there is silver, that of what reflects all.
+    fn mixed(&self, side: usize, of: impl Fn(usize) -> f64) -> Rgb {
+        if self.silver == Rgb::ZERO {
+            return Rgb::splat(of(side));
+        }
+        (Rgb::ONE - self.silver) * of(side) + self.silver * of(SILVERED)
     }
 }
 
