@@ -108,17 +108,14 @@ impl Bsdf {
     /// The way that a facet chosen by u sends `wo`, and whether it mirrors it; by `choice` where it may let it through.
     fn by_facet(&self, choice: f64, u: DVec2) -> Option<(DVec3, bool)> {
         let facet = self.ggx().visible_normal(self.wo, u);
-        if choice < self.mirrors(facet) {
+        if !self.is_frosted() || choice < self.mirrors(facet) {
             return Some((reflect(self.wo, facet), true));
         }
         Some((refract(self.wo, facet, self.eta())?, false))
     }
 
-    /// How often a facet that was chosen mirrors: by its own share, since that of the whole surface is another beyond the critical angle.
+    /// How often a facet of a rough boundary mirrors: by its own share, since that of the whole surface is another beyond the critical angle.
     fn mirrors(&self, facet: DVec3) -> f64 {
-        if !self.is_frosted() {
-            return 1.0;
-        }
         let share = self.mirror_share(self.wo.dot(facet).clamp(0.0, 1.0));
         let (mirrored, through) = (mean(share), mean((Rgb::ONE - share) * self.transmit));
         if mirrored > 0.0 { mirrored / (mirrored + through) } else { 0.0 }
@@ -132,12 +129,17 @@ impl Bsdf {
             let eta = if bounce.through { self.eta() } else { 1.0 };
             return bounce.weight / (eta * eta);
         };
-        let (from, to) = (self.wo, bounce.direction);
-        let side = if bounce.through { -1.0 } else { 1.0 };
+        let seen = self.seen_from(bounce.direction);
+        let cosine = bounce.direction.dot(seen.normal).max(0.0);
+        seen.sent(self.wo) * (cosine / self.wo.dot(self.normal) / density)
+    }
+
+    /// The same surface as it is seen along another direction, of this side or the other.
+    fn seen_from(&self, wo: DVec3) -> Bsdf {
+        let beyond = wo.dot(self.geometric) < 0.0;
+        let side = if beyond { -1.0 } else { 1.0 };
         let (normal, geometric) = (self.normal * side, self.geometric * side);
-        let seen =
-            Bsdf { wo: to, normal, geometric, outside: self.outside != bounce.through, ..self.clone() };
-        seen.sent(from) * (to.dot(normal).max(0.0) / from.dot(self.normal) / density)
+        Bsdf { wo, normal, geometric, outside: self.outside != beyond, ..self.clone() }
     }
 
     fn smooth(&self, way: super::Scattered, odds: f64, through: bool) -> Option<Bounce> {
@@ -179,24 +181,34 @@ impl Bsdf {
     /// Density per solid angle with which [`Bsdf::bounce`] goes on along `wi`, smooth mirrors and boundaries left out.
     pub fn density(&self, odds: Odds, wi: DVec3) -> f64 {
         let cosine = wi.dot(self.normal);
+        let by_facets = match odds.mirror > 0.0 && self.is_glossy() {
+            true => odds.mirror * self.facet_density(wi),
+            false => 0.0,
+        };
         if cosine <= 0.0 {
-            let bent = self.frosted_density(wi);
-            let bent = match bent > 0.0 {
-                true => bent * (1.0 - self.mirrors(self.ggx().bending(self.wo, wi, self.eta()))),
-                false => 0.0,
-            };
-            return odds.mirror * bent + odds.beyond * -cosine * FRAC_1_PI;
+            return by_facets + odds.beyond * -cosine * FRAC_1_PI;
         }
         let mut density = odds.diffuse * cosine * FRAC_1_PI;
         if odds.specular > 0.0 {
             density +=
                 odds.specular * lobes::specular_density(self.lobe, self.exponent, self.normal, self.wo, wi);
         }
-        if odds.mirror > 0.0 && self.is_glossy() {
-            let mirrored = self.ggx().mirrored_density(self.wo, wi);
-            density += odds.mirror * mirrored * self.mirrors((self.wo + wi).normalize_or(self.normal));
+        density + by_facets
+    }
+
+    /// Density with which [`Bsdf::by_facet`] comes to `wi`.
+    fn facet_density(&self, wi: DVec3) -> f64 {
+        let ggx = self.ggx();
+        if wi.dot(self.normal) <= 0.0 {
+            let bent = self.frosted_density(wi);
+            let bends = || 1.0 - self.mirrors(ggx.bending(self.wo, wi, self.eta()));
+            return if bent > 0.0 { bent * bends() } else { 0.0 };
         }
-        density
+        let mirrored = ggx.mirrored_density(self.wo, wi);
+        match self.is_frosted() {
+            true => mirrored * self.mirrors((self.wo + wi).normalize_or(self.normal)),
+            false => mirrored,
+        }
     }
 
     /// True where light goes through a rough boundary, which spreads it. One that does not bend does not spread either.
@@ -323,16 +335,11 @@ mod tests {
         for (name, bsdf) in
             materials(0.6).into_iter().filter(|(name, _)| !["rough share", "coated"].contains(name))
         {
-            let above = |u| cosine_hemisphere(u);
-            let both = |u| [above(u), above(u) * DVec3::new(1.0, 1.0, -1.0)];
-            for wi in grid(9).flat_map(both) {
-                let through = wi.z < 0.0;
-                let side = if through { -1.0 } else { 1.0 };
-                let (normal, geometric) = (bsdf.normal * side, bsdf.geometric * side);
-                let back =
-                    Bsdf { wo: wi, normal, geometric, outside: bsdf.outside != through, ..bsdf.clone() };
-                let (there, back) = (bsdf.sent(wi) / wi.z.abs(), back.sent(bsdf.wo) / bsdf.wo.z);
-                let eta = if through { bsdf.eta() } else { 1.0 };
+            let above = grid(9).map(cosine_hemisphere);
+            for wi in above.flat_map(|up| [up, up * DVec3::new(1.0, 1.0, -1.0)]) {
+                let (there, back) =
+                    (bsdf.sent(wi) / wi.z.abs(), bsdf.seen_from(wi).sent(bsdf.wo) / bsdf.wo.z);
+                let eta = if wi.z < 0.0 { bsdf.eta() } else { 1.0 };
                 let off = (there - back * (eta * eta)).abs().max_element();
                 assert!(off <= 1e-9 * there.max_element(), "{name}, {wi}: {there} and {back}, η {eta}");
             }
@@ -345,14 +352,8 @@ mod tests {
         for bsdf in materials(0.7).into_iter().map(|(_, bsdf)| bsdf).chain([matt_glass]) {
             // Power that arrives along `wo`, and is sent on: by the lobes as they are seen from where it goes.
             let forwarded = over_all_choices(&bsdf, |bounce| bsdf.forwarded(bounce).x);
-            let seen = over_all_directions(1000, |to| {
-                let through = to.z < 0.0;
-                let side = if through { -1.0 } else { 1.0 };
-                let (normal, geometric) = (bsdf.normal * side, bsdf.geometric * side);
-                let outside = bsdf.outside != through;
-                let from = Bsdf { wo: to, normal, geometric, outside, ..bsdf.clone() };
-                from.sent(bsdf.wo).x * to.z.abs() / bsdf.wo.z
-            });
+            let seen =
+                over_all_directions(1000, |to| bsdf.seen_from(to).sent(bsdf.wo).x * to.z.abs() / bsdf.wo.z);
             assert!((forwarded - seen).abs() < 5e-3, "{bsdf:?}: {forwarded} and {seen}");
         }
     }
