@@ -53,14 +53,13 @@ pub fn tracer(
     settings: &settings::ResolvedSettings,
     watch: tiles::Watch<'_>,
 ) -> Option<Box<dyn Tracer>> {
+    let paths = |aid| path::Path::aided(aid, world, view, settings, watch);
     Some(match kind {
         TracerKind::Raycast => Box::new(whitted::Whitted::raycast(world, settings)),
         TracerKind::Whitted => Box::new(whitted::Whitted::new(world, settings)),
-        TracerKind::Path => Box::new(path::Path::with_roulette(world, view, settings, watch)?),
-        TracerKind::MonteCarlo => {
-            Box::new(path::Path::with_roulette(world, view, settings, watch)?.branching())
-        }
-        TracerKind::Irradiance => Box::new(path::Path::with_records(world, view, settings, watch)?),
-        TracerKind::Photon => Box::new(path::Path::with_photons(world, view, settings, watch)?),
+        TracerKind::Path => Box::new(paths(path::Aid::Roulette)?),
+        TracerKind::MonteCarlo => Box::new(paths(path::Aid::Roulette)?.branching()),
+        TracerKind::Irradiance => Box::new(paths(path::Aid::Records)?),
+        TracerKind::Photon => Box::new(paths(path::Aid::Photons)?),
     })
 }

@@ -43,7 +43,7 @@ const FEWEST: u32 = 4;
 const BRIGHT: f64 = 4.0;
 
 /// What a tracer tells apart where its outline is seen.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub struct Outlines {
     /// Around all bright things that a camera may see emit. None where some of that has no bounds.
     lamps: Vec<Ball>,
@@ -90,7 +90,7 @@ fn white(settings: &ResolvedSettings) -> f64 {
     1.0 / exp2(settings.exposure)
 }
 
-/// How many rays of each sample find what it is seen to emit: none where no outline of a lamp is seen in it, or where its only sample
+/// How many rays of each sample find what a pixel is seen to emit: none where no outline of a lamp is seen in it, or where its only sample
 /// is to go through its centre; else as many as leave no more noise than the edge of white paper has; a power of two. The rays that ask are counted.
 pub fn rays(picture: Picture<'_>, pixel: [u32; 2], counts: &mut RayCounts) -> u32 {
     let Outlines { lamps, most } = picture.tracer.outlines();

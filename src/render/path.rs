@@ -52,6 +52,17 @@ pub struct Path {
     roulette: Roulette,
 }
 
+/// What is made before a picture, to end its paths sooner.
+#[derive(Clone, Copy, Debug)]
+pub enum Aid {
+    /// How often paths end by chance.
+    Roulette,
+    /// Photons, which tell the rest.
+    Photons,
+    /// Records of irradiance, which tell the rest.
+    Records,
+}
+
 /// Branches of `montecarlo`. A power of two, so that the points of a surface's ways are even.
 const BRANCHES: u32 = 4;
 
@@ -168,52 +179,36 @@ impl Path {
         }
     }
 
-    /// The same with no more rays for outlines than a picture by this view pays for.
-    fn seen(world: &World, view: &View, settings: &ResolvedSettings) -> Path {
-        let path = Path::new(world, settings);
-        let outlines = path.outlines.within_budget(Picture { world, view, tracer: &path, settings });
-        Path { outlines, ..path }
-    }
-
-    /// Paths that end by chance where that pays. None where learning it is called off.
-    pub fn with_roulette(
+    /// Paths with an aid, for a picture by a view: with no more rays for outlines than it can bear. None where making the aid is called off.
+    pub fn aided(
+        aid: Aid,
         world: &World,
         view: &View,
         settings: &ResolvedSettings,
         watch: Watch<'_>,
     ) -> Option<Path> {
-        let path = Path::seen(world, view, settings);
-        let roulette = Roulette::learned(world, &path, view, settings, watch)?;
-        Some(Path { roulette, ..path })
+        let path = Path::new(world, settings);
+        let outlines = path.outlines.within_budget(Picture { world, view, tracer: &path, settings });
+        let path = Path { outlines, ..path };
+        Some(match aid {
+            Aid::Roulette => {
+                let roulette = Roulette::learned(world, &path, view, settings, watch)?;
+                Path { roulette, ..path }
+            }
+            Aid::Photons => {
+                let maps = Maps::new(world, &path.lights, &path.choice, settings, watch)?;
+                Path { photons: Some(maps), ..path }
+            }
+            Aid::Records => {
+                let records = Records::new(world, &path, view, settings, watch)?;
+                Path { records: Some(records), ..path }
+            }
+        })
     }
 
     /// The same paths, each of which branches once.
     pub fn branching(self) -> Path {
         Path { branches: BRANCHES, ..self }
-    }
-
-    /// Paths that photons end. None where shooting them is called off.
-    pub fn with_photons(
-        world: &World,
-        view: &View,
-        settings: &ResolvedSettings,
-        watch: Watch<'_>,
-    ) -> Option<Path> {
-        let path = Path::seen(world, view, settings);
-        let maps = Maps::new(world, &path.lights, &path.choice, settings, watch)?;
-        Some(Path { photons: Some(maps), ..path })
-    }
-
-    /// Paths that end where records of irradiance tell the rest. None where making them is called off.
-    pub fn with_records(
-        world: &World,
-        view: &View,
-        settings: &ResolvedSettings,
-        watch: Watch<'_>,
-    ) -> Option<Path> {
-        let path = Path::seen(world, view, settings);
-        let records = Records::new(world, &path, view, settings, watch)?;
-        Some(Path { records: Some(records), ..path })
     }
 }
 
@@ -396,7 +391,7 @@ impl Path {
             return Ok(sent);
         }
         let share = match sample.pdf {
-            Some(density) if light.is_met() => balance(density * often, bsdf.density(odds, sample.wi)),
+            Some(density) if light.is_met => balance(density * often, bsdf.density(odds, sample.wi)),
             _ => 1.0,
         };
         if !light.shadow {

@@ -76,7 +76,7 @@ impl Maps {
             let photons = || shooting.photons(paths, room as usize);
             on_threads(settings.threads, || Map::new(photons()?, watch))
         };
-        let global = match lights.are_all_sent(world) {
+        let global = match lights.are_all_sent {
             true => map(0, choice, &Aim::Anything(ball))?,
             false => Map::default(),
         };

@@ -36,6 +36,8 @@ pub struct Lights {
     skies: Vec<usize>,
     /// The light of each emitter of the world, by its index there.
     of_emitter: Vec<Option<usize>>,
+    /// Whether rays that leave the lights and are stopped by whatever stands in their way bring all light there is.
+    pub are_all_sent: bool,
 }
 
 /// One light.
@@ -50,7 +52,7 @@ pub struct Light {
     pub samples: u32,
     /// Whether chance finds it as well, by rays that meet it with a density that [`Light::density`] knows: the two share what it sends.
     /// Else all of that counts where it is asked.
-    is_met: bool,
+    pub is_met: bool,
 }
 
 /// The forms of a light, in world space.
@@ -114,16 +116,12 @@ impl Lights {
             })
         };
         let of_emitter = world.emitters.iter().map(add).collect();
-        if world.hides_from_light() {
+        let hides = world.hides_from_light();
+        if hides {
             lights.iter_mut().for_each(|light| light.is_met = false);
         }
-        Lights { lights, skies, of_emitter }
-    }
-
-    /// Whether rays that leave the lights and are stopped by whatever stands in their way bring all light there is.
-    pub fn are_all_sent(&self, world: &World) -> bool {
-        let shadows = self.lights.iter().all(|light| light.shadow);
-        shadows && !world.glows_unasked && !world.hides_from_light()
+        let are_all_sent = !hides && !world.glows_unasked && lights.iter().all(|light| light.shadow);
+        Lights { lights, skies, of_emitter, are_all_sent }
     }
 
     /// The light that a primitive is part of, by its index; none where it does not emit or is not asked.
@@ -228,12 +226,6 @@ impl Light {
             }
             Source::Area(area) => area.sample(at, normal, u, |distance| self.dimming(distance)),
         }
-    }
-
-    /// Whether a ray may meet what [`Light::sample`] chooses, with a density that [`Light::density`] knows.
-    #[inline]
-    pub fn is_met(&self) -> bool {
-        self.is_met
     }
 
     /// Density per solid angle with which [`Light::sample`] chooses the direction `wi` from a point, given where a ray that way
