@@ -63,7 +63,7 @@ impl Evaluated {
 
     /// True where an error was found.
     pub fn has_errors(&self) -> bool {
-        self.diagnostics.iter().any(|d| d.severity == crate::diag::Severity::Error)
+        crate::diag::has_errors(&self.diagnostics)
     }
 }
 

@@ -111,6 +111,11 @@ impl Diagnostic {
     }
 }
 
+/// True where one of them is more than a warning.
+pub fn has_errors(diagnostics: &[Diagnostic]) -> bool {
+    diagnostics.iter().any(|d| d.severity == Severity::Error)
+}
+
 /// The name nearest to `word` by Damerau–Levenshtein distance, if it is nearer than a third of the longer of the two.
 /// Ties go to the first in alphabetical order, so that the hint does not depend on the order of a hash.
 pub fn nearest<'a>(word: &str, names: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
@@ -155,7 +160,7 @@ impl Sink {
 
     /// True once an error is in.
     pub fn has_errors(&self) -> bool {
-        self.found.iter().any(|d| d.severity == Severity::Error)
+        has_errors(&self.found)
     }
 
     /// What was found so far.

@@ -95,8 +95,7 @@ pub fn prepare_frame(
     let options = WorldOptions { accelerator: settings.accelerator, footprint: Some(view.footprint()) };
     let (world, of_world) = World::with_assets(scene.nodes, &options, assets, kept);
     found.extend(of_world);
-    let has_errors = found.iter().any(|d| d.severity == crate::diag::Severity::Error);
-    ((!has_errors).then_some(Prepared { world, settings, view }), found)
+    ((!crate::diag::has_errors(&found)).then_some(Prepared { world, settings, view }), found)
 }
 
 /// The camera with this label, or the first; none where there is none, which [`whole::faults`] tells.

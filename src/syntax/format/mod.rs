@@ -9,7 +9,7 @@ mod tree;
 
 use super::build::{ParseLimits, parse_file, places};
 use super::print::print;
-use crate::diag::{Diagnostic, Severity, SourceId};
+use crate::diag::{Diagnostic, SourceId, has_errors};
 
 /// The widest line, in characters. Lines without a place to break may be wider.
 pub const WIDTH: usize = 100;
@@ -29,7 +29,7 @@ fn with_plain_line_ends(text: &str) -> Option<String> {
 /// The same, for a file of a source map.
 pub fn format_source(source: SourceId, text: &str, limits: ParseLimits) -> Result<String, Vec<Diagnostic>> {
     let (tree, found) = parse_file(source, text, limits);
-    if found.iter().any(|d| d.severity == Severity::Error) {
+    if has_errors(&found) {
         return Err(found);
     }
     let shown = print(&tree);

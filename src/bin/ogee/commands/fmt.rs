@@ -3,7 +3,7 @@
 use crate::args::Fmt;
 use crate::place::Place;
 use crate::speech::{Ended, Exit, Failure, data, show, tell, tell_failure};
-use ogee::diag::Severity;
+use ogee::diag::has_errors;
 use ogee::syntax::format::format_source;
 use std::path::Path;
 
@@ -23,7 +23,7 @@ pub fn run(args: &Fmt) -> Ended {
 
 fn lay_out(file: &Path, only_check: bool) -> Ended {
     let parsed = super::parsed(file, ogee::session::Limits::default())?;
-    if parsed.diagnostics.iter().any(|d| d.severity == Severity::Error) {
+    if has_errors(&parsed.diagnostics) {
         show(&parsed.diagnostics, &parsed.sources);
         tell(format!("{} is left as it is", file.display()));
         return Ok(Exit::Scene);

@@ -10,7 +10,7 @@ use crate::args::Render;
 use crate::interrupt;
 use crate::speech::{Ended, Exit, Failure, data, show, tell, tell_failure};
 use bar::Bar;
-use ogee::diag::{Diagnostic, Severity};
+use ogee::diag::{Diagnostic, has_errors};
 use ogee::render::film::Film;
 use ogee::render::output::Format;
 use ogee::render::passes::{self, Passes};
@@ -93,11 +93,6 @@ fn still(
         true if has_errors(&faults) => Exit::Scene,
         true => Exit::Done,
     })
-}
-
-/// Whether one of them is more than a warning.
-fn has_errors(diagnostics: &[Diagnostic]) -> bool {
-    diagnostics.iter().any(|d| d.severity == Severity::Error)
 }
 
 /// True where all of a picture is made that was asked for.

@@ -6,7 +6,7 @@ use super::{Bar, Seconds, prepare, render, stats};
 use crate::args::Render;
 use crate::interrupt::CANCEL;
 use crate::speech::{Ended, Exit, Failure, data, show, tell, tell_failure};
-use ogee::diag::{Code, Diagnostic, Severity, Span};
+use ogee::diag::{Code, Diagnostic, Span, has_errors};
 use ogee::render::film::{Film, Taken};
 use ogee::render::output::Format;
 use ogee::render::output::movie::Movie;
@@ -124,7 +124,7 @@ impl Reel<'_, '_> {
             return Ok(Some(Exit::Interrupted));
         };
         let faults = picture::faults(&film);
-        self.total.faulty |= super::has_errors(&faults);
+        self.total.faulty |= has_errors(&faults);
         self.say(frame, faults);
         seconds.write.measure(|| self.keep(frame, &film, &prepared))?;
         self.count(frame, &film, &prepared, &seconds)?;
@@ -198,7 +198,7 @@ impl Reel<'_, '_> {
         if news.is_empty() {
             return;
         }
-        let ends = news.iter().any(|d| d.severity == Severity::Error);
+        let ends = has_errors(&news);
         self.bar.aside(|| {
             tell(if ends {
                 format!("at frame {frame}:")
