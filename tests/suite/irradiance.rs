@@ -3,10 +3,11 @@
 use crate::stage::*;
 use glam::DVec3;
 use ogee::render::film::Film;
+use ogee::render::sampler::Sampler;
 use ogee::render::settings::ResolvedSettings;
 use ogee::scene::assets::DiskLoader;
 use ogee::scene::*;
-use ogee::world::{World, WorldOptions};
+use ogee::world::{Ray, RayKind, World, WorldOptions};
 
 const X: DVec3 = DVec3::X;
 const Y: DVec3 = DVec3::Y;
@@ -178,6 +179,19 @@ fn records_and_paths_agree_among_gloss_mirrors_and_glass() {
             assert!((ratio - 1.0).abs() < 0.05, "{ratio} in square {i} at depth {depth}");
         }
     }
+}
+
+#[test]
+fn where_an_error_decides_records_are_made_for_it_and_not_for_the_most_samples() {
+    let room = world(vec![object(sphere(DVec3::ZERO, 1.0), &glowing_and(1.0, 0.5))]);
+    let eye = DVec3::new(0.3, 0.1, -0.2);
+    // 25 samples of 16 rays: 400 err by a twentieth.
+    let [decided, said] = [(Some(0.1), 4096), (None, 25)].map(|(error, samples)| {
+        let tracer = tracer_from(&ResolvedSettings { error, ..records([12, 12], samples) }, &room, eye, X);
+        let ray = Ray { origin: eye, direction: X, t_max: f64::INFINITY, kind: RayKind::Camera };
+        tracer.radiance(&room, ray, &mut Sampler::new(1, 2, 3, 4))
+    });
+    assert_eq!(decided, said);
 }
 
 #[test]

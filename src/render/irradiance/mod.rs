@@ -54,6 +54,14 @@ const PIXELS: [f64; 2] = [4.0, 64.0];
 /// The ray from one record's place to the next is lifted by this share of its length, so that the surface itself is not met.
 const LIFTED: f64 = 1.0 / 64.0;
 
+/// Samples of a pixel that records are made for. Where an error decides, as many as leave half of it to the light of one record, whose rays
+/// err by about 1 over the root of their number.
+fn samples(settings: &ResolvedSettings) -> u32 {
+    let Some(error) = settings.error else { return settings.samples };
+    let rays = 1.0 / (error / 2.0 * (error / 2.0));
+    settings.samples.min((rays / f64::from(prepass::RAYS)).ceil() as u32)
+}
+
 impl Records {
     /// The records that a picture needs. Threads leave no trace in them. None where the work is called off.
     pub fn new(
@@ -64,7 +72,8 @@ impl Records {
         watch: Watch<'_>,
     ) -> Option<Records> {
         // Noise falls as the root of the samples, and the error of what is interpolated about as the square of its reach.
-        let error = ERROR * (64.0 / f64::from(settings.samples)).sqrt().sqrt();
+        let samples = samples(settings);
+        let error = ERROR * (64.0 / f64::from(samples)).sqrt().sqrt();
         let mut records = Records {
             records: Vec::new(),
             grid: Grid::default(),
@@ -72,7 +81,7 @@ impl Records {
             footprint: view.footprint(),
             has_end: settings.depth < u32::MAX,
         };
-        let prepass = prepass::Prepass { world, path, view, settings, watch };
+        let prepass = prepass::Prepass { world, path, view, settings, samples, watch };
         watch.progress.phase("records");
         on_threads(settings.threads, || prepass::fill(&mut records, prepass))?;
         Some(records)

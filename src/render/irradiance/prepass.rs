@@ -29,6 +29,8 @@ pub struct Prepass<'a> {
     pub view: &'a View,
     /// With what.
     pub settings: &'a ResolvedSettings,
+    /// For how many samples of a pixel.
+    pub samples: u32,
     /// Who looks on.
     pub watch: Watch<'a>,
 }
@@ -49,7 +51,7 @@ const SQUARE: u32 = 4;
 const BAND: usize = 1 << 15;
 
 /// Rays of a record for each sample of a pixel. So all records take hardly more rays than as many pixels have samples.
-const RAYS: u32 = 16;
+pub const RAYS: u32 = 16;
 
 /// The same of those of the first turn: they have no others to ask, and all that come later ask them.
 const FIRST_RAYS: u32 = 64;
@@ -124,7 +126,7 @@ impl<'a> Prepass<'a> {
     /// work is called off.
     fn record(&self, records: &Records, lack: &Lack<'_>, turn: usize) -> Option<Record> {
         let matt = &lack.matt;
-        let rays = if turn == 0 { FIRST_RAYS } else { RAYS }.saturating_mul(self.settings.samples);
+        let rays = if turn == 0 { FIRST_RAYS } else { RAYS }.saturating_mul(self.samples);
         let hemisphere = Hemisphere::of(2 * rays.isqrt());
         let each = (rays / hemisphere.cells()).max(1).next_power_of_two();
         let seen = |cell| self.watch.go_on().map(|()| self.seen(records, lack, (hemisphere, cell), each));
