@@ -15,6 +15,21 @@ pub trait Tracer: Sync {
         Rgb::ZERO
     }
 
+    /// How many samples of a pixel it is ready for, by their numbers.
+    fn lasts(&self) -> u32 {
+        u32::MAX
+    }
+
+    /// Makes it ready for as many samples after those. None where that is called off.
+    fn renew(
+        &mut self,
+        _world: &World,
+        _settings: &settings::ResolvedSettings,
+        _watch: tiles::Watch<'_>,
+    ) -> Option<()> {
+        Some(())
+    }
+
     /// What emits so much that its emission is worth finding apart where its outline is seen. Nothing where the tracer does not tell it
     /// apart.
     fn outlines(&self) -> &Outlines {

@@ -1,14 +1,18 @@
 //! A picture in passes over all of it, each with more samples: after any of them it is the picture of so many samples, to the last bit. Knows no
-//! clock; who has one decides how far to go.
+//! clock; who has one decides how far to go. So is a picture made whose tracer must be renewed on the way.
 
+use super::Tracer;
+use super::camera::View;
 use super::film::Film;
-use super::tiles::{Picture, Progress, TILE, Tile, place, run, tiles_of};
+use super::settings::ResolvedSettings;
+use super::tiles::{Picture, Progress, TILE, Tile, Watch, place, run, tiles_of};
+use crate::world::World;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Mutex, MutexGuard};
 
-/// A picture on the way. It must always be asked for with the same [`Picture`], whose tracer does not depend on the number of samples.
+/// A picture on the way.
 pub struct Passes<'a> {
-    picture: Picture<'a>,
+    settings: &'a ResolvedSettings,
     tiles: Vec<Mutex<Tile>>,
     /// Samples that each pixel has, or is to have.
     to: u32,
@@ -16,31 +20,42 @@ pub struct Passes<'a> {
 
 impl<'a> Passes<'a> {
     /// Without a sample.
-    pub fn new(picture: Picture<'a>) -> Passes<'a> {
-        let tiles = tiles_of(picture.settings.crop, TILE).into_iter();
-        let tiles = tiles.map(|crop| Mutex::new(Tile::new(crop, picture.settings))).collect();
-        Passes { picture, tiles, to: 0 }
+    pub fn new(settings: &'a ResolvedSettings) -> Passes<'a> {
+        let tiles = tiles_of(settings.crop, TILE).into_iter();
+        let tiles = tiles.map(|crop| Mutex::new(Tile::new(crop, settings))).collect();
+        Passes { settings, tiles, to: 0 }
     }
 
-    /// Takes the samples up to number `to` of each pixel; false where that was cancelled.
-    pub fn advance(&mut self, to: u32, progress: &dyn Progress, cancel: &AtomicBool) -> bool {
+    /// Takes the samples up to number `to` of each pixel; false where that was cancelled. The picture must be the same in all passes, by a tracer
+    /// that is ready for these samples.
+    pub fn advance(
+        &mut self,
+        picture: Picture<'_>,
+        to: u32,
+        progress: &dyn Progress,
+        cancel: &AtomicBool,
+    ) -> bool {
         self.to = to;
         progress.phase("");
-        let (done, picture) = (AtomicUsize::new(0), self.picture);
+        let done = AtomicUsize::new(0);
         let work = |tile: &Mutex<Tile>| {
             if locked(tile).advance(picture, to, cancel) {
                 progress.tiles(done.fetch_add(1, Ordering::Relaxed) + 1, self.tiles.len());
             }
         };
-        run(picture.settings.threads, &self.tiles, &work);
+        run(self.settings.threads, &self.tiles, &work);
         done.into_inner() == self.tiles.len()
+    }
+
+    /// True where every pixel has enough.
+    fn is_enough(&self) -> bool {
+        self.tiles.iter().all(|tile| locked(tile).is_enough())
     }
 
     /// The picture so far; pixels that miss samples of the last pass are not finished.
     pub fn film(&self) -> Film {
-        let settings = self.picture.settings;
-        let mut film = Film::new(settings.size, settings.crop);
-        self.tiles.iter().for_each(|tile| place(&mut film, locked(tile).film(settings, self.to)));
+        let mut film = Film::new(self.settings.size, self.settings.crop);
+        self.tiles.iter().for_each(|tile| place(&mut film, locked(tile).film(self.settings, self.to)));
         film.sort_sources();
         film
     }
@@ -48,6 +63,49 @@ impl<'a> Passes<'a> {
 
 fn locked(tile: &Mutex<Tile>) -> MutexGuard<'_, Tile> {
     tile.lock().unwrap_or_else(|poisoned| poisoned.into_inner())
+}
+
+/// Renders onto a bare film by a tracer that is renewed as often as it must be. Once the work is called off the film is that of the pass
+/// before, or of the first as far as it is.
+pub fn render_renewing(
+    film: &Mutex<Film>,
+    (world, view, settings): (&World, &View, &ResolvedSettings),
+    tracer: &mut dyn Tracer,
+    watch: Watch<'_>,
+) {
+    let mut passes = Passes::new(settings);
+    let of = settings.samples.div_ceil(tracer.lasts()) as usize;
+    for i in 0..of {
+        if i > 0 && tracer.renew(world, settings, watch).is_none() {
+            return;
+        }
+        let picture = Picture { world, view, tracer: &*tracer, settings };
+        let part = Part { progress: watch.progress, before: i, of };
+        let is_whole = passes.advance(picture, tracer.lasts().min(settings.samples), &part, watch.cancel);
+        if is_whole || i == 0 {
+            *film.lock().unwrap_or_else(|poisoned| poisoned.into_inner()) = passes.film();
+        }
+        if !is_whole || passes.is_enough() {
+            return;
+        }
+    }
+}
+
+/// Tells of one of several passes as a part of the whole.
+struct Part<'a> {
+    progress: &'a dyn Progress,
+    before: usize,
+    of: usize,
+}
+
+impl Progress for Part<'_> {
+    fn phase(&self, name: &'static str) {
+        self.progress.phase(name);
+    }
+
+    fn tiles(&self, done: usize, total: usize) {
+        self.progress.tiles(self.before * total + done, self.of * total);
+    }
 }
 
 /// Samples of the first pass: with one, the ray goes through the pixel's centre, and more could not go on from it.

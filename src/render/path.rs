@@ -196,7 +196,7 @@ impl Path {
                 Path { roulette, ..path }
             }
             Aid::Photons => {
-                let maps = Maps::new(world, &path.lights, &path.choice, settings, watch)?;
+                let maps = Maps::new(world, (&path.lights, &path.choice), settings, 0, watch)?;
                 Path { photons: Some(maps), ..path }
             }
             Aid::Records => {
@@ -231,6 +231,17 @@ impl Tracer for Path {
             walk.sampler.undefined = Some(fault);
             Rgb::ZERO
         })
+    }
+
+    fn lasts(&self) -> u32 {
+        self.photons.as_ref().map_or(u32::MAX, Maps::last)
+    }
+
+    fn renew(&mut self, world: &World, settings: &ResolvedSettings, watch: Watch<'_>) -> Option<()> {
+        // There is no need for both at once.
+        let round = self.photons.take()?.round + 1;
+        self.photons = Some(Maps::new(world, (&self.lights, &self.choice), settings, round, watch)?);
+        Some(())
     }
 
     fn outlines(&self) -> &Outlines {

@@ -3,11 +3,12 @@
 
 use super::adaptive::Blocks;
 use super::camera::View;
-use super::features::{FeatureSum, Layers};
+use super::features::FeatureSum;
 use super::film::{Fault, Film, PixelSum, Report, dimmed};
 use super::filter;
 use super::outline;
 use super::sampler::Sampler;
+use super::settings::ResolvedSettings;
 use super::tiles::Picture;
 use crate::diag::Span;
 use crate::scene::Rgb;
@@ -25,6 +26,8 @@ pub struct Pixel {
     pub taken: u32,
     /// True where its estimated error is as small as asked for.
     pub enough: bool,
+    /// By which its error is estimated, where one is asked for.
+    blocks: Option<Box<Blocks>>,
     /// How many rays of each sample find what is seen to emit, once that has been asked.
     emission_rays: Option<u32>,
     undefined: Option<TextureFault>,
@@ -34,13 +37,14 @@ pub struct Pixel {
 
 impl Pixel {
     /// The pixel in a column and row of the whole picture, without a sample.
-    pub fn new(place: [u32; 2], kept: Layers) -> Pixel {
-        let features = (!kept.is_empty()).then(Box::default);
+    pub fn new(place: [u32; 2], settings: &ResolvedSettings) -> Pixel {
+        let features = (!settings.kept().is_empty()).then(Box::default);
+        let blocks = settings.error.map(|_| Box::default());
         let sum = PixelSum::default();
-        Pixel { place, sum, taken: 0, enough: false, emission_rays: None, undefined: None, features }
+        Pixel { place, sum, taken: 0, enough: false, blocks, emission_rays: None, undefined: None, features }
     }
 
-    /// Takes the samples up to number `to`; false where that was cancelled.
+    /// Takes the samples up to number `to`, or until the error is as small as the settings ask for; false where that was cancelled.
     pub fn advance(
         &mut self,
         picture: Picture<'_>,
@@ -48,36 +52,25 @@ impl Pixel {
         report: &mut Report,
         cancel: &AtomicBool,
     ) -> bool {
+        if self.enough {
+            return true;
+        }
         let mut sampler = self.sampler(picture, report);
-        while self.taken < to {
+        while self.taken < to && !self.enough {
             if cancel.load(Ordering::Relaxed) {
                 return false;
             }
-            self.take(picture, &mut sampler, report);
+            let radiance = self.take(picture, &mut sampler, report);
+            self.weigh(radiance, picture.settings);
         }
         true
     }
 
-    /// Takes samples until the error is as small as `target`, or there are as many as the settings allow; false where that was cancelled.
-    pub fn settle(
-        &mut self,
-        picture: Picture<'_>,
-        target: f64,
-        report: &mut Report,
-        cancel: &AtomicBool,
-    ) -> bool {
-        let (mut blocks, mut sampler) = (Blocks::default(), self.sampler(picture, report));
-        while self.taken < picture.settings.samples {
-            if cancel.load(Ordering::Relaxed) {
-                return false;
-            }
-            blocks.add(self.take(picture, &mut sampler, report));
-            self.enough = blocks.error(picture.settings.exposure).is_some_and(|error| error <= target);
-            if self.enough {
-                break;
-            }
-        }
-        true
+    /// Finds whether the error is small enough, with one sample more.
+    fn weigh(&mut self, radiance: Rgb, settings: &ResolvedSettings) {
+        let (Some(blocks), Some(target)) = (&mut self.blocks, settings.error) else { return };
+        blocks.add(radiance);
+        self.enough = blocks.error(settings.exposure).is_some_and(|error| error <= target);
     }
 
     /// The numbers of the next sample.

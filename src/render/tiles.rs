@@ -147,20 +147,19 @@ impl Tile {
     /// Without a sample.
     pub fn new(crop: Crop, settings: &ResolvedSettings) -> Tile {
         let places = (0..crop.height).flat_map(|y| (0..crop.width).map(move |x| [crop.x + x, crop.y + y]));
-        let pixels = places.map(|place| Pixel::new(place, settings.kept())).collect();
+        let pixels = places.map(|place| Pixel::new(place, settings)).collect();
         Tile { crop, pixels, report: Report::default() }
     }
 
-    /// Takes the samples up to number `to` of each pixel; false where that was cancelled.
+    /// Takes the samples up to number `to` of each pixel that has not enough; false where that was cancelled.
     pub fn advance(&mut self, picture: Picture<'_>, to: u32, cancel: &AtomicBool) -> bool {
         let Tile { pixels, report, .. } = self;
         pixels.iter_mut().all(|pixel| pixel.advance(picture, to, report, cancel))
     }
 
-    /// Takes as many samples of each pixel as its error asks for.
-    fn settle(&mut self, picture: Picture<'_>, target: f64, cancel: &AtomicBool) {
-        let Tile { pixels, report, .. } = self;
-        pixels.iter_mut().all(|pixel| pixel.settle(picture, target, report, cancel));
+    /// True where every pixel has enough.
+    pub fn is_enough(&self) -> bool {
+        self.pixels.iter().all(|pixel| pixel.enough)
     }
 
     /// What there is of the picture; pixels with fewer than `to` samples are not finished, unless they have enough.
@@ -188,10 +187,8 @@ impl Tile {
 fn render_tile(picture: Picture<'_>, crop: Crop, cancel: &AtomicBool) -> Film {
     let mut tile = Tile::new(crop, picture.settings);
     let samples = picture.settings.samples;
-    match picture.settings.error {
-        None => drop(tile.advance(picture, samples, cancel)),
-        Some(target) => tile.settle(picture, target, cancel),
-    }
+    // Whoever wants to know which pixels are finished asks the film.
+    let _ = tile.advance(picture, samples, cancel);
     tile.film(picture.settings, samples)
 }
 

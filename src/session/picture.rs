@@ -8,7 +8,7 @@ use crate::render::camera::View;
 use crate::render::denoise;
 use crate::render::features::Layers;
 use crate::render::film::{Fault, Film};
-use crate::render::passes::Passes;
+use crate::render::passes::{self, Passes};
 use crate::render::settings::{Crop, ResolvedSettings};
 use crate::render::tiles::{self, Picture, Progress, Watch};
 use crate::render::{self, Tracer};
@@ -115,7 +115,8 @@ fn choose<'a>(scene: &'a Scene, label: Option<&str>) -> Result<Option<&'a Camera
 }
 
 impl Prepared {
-    fn picture<'a>(&'a self, tracer: &'a dyn Tracer) -> Picture<'a> {
+    /// Everything of the picture, by a tracer.
+    pub fn picture<'a>(&'a self, tracer: &'a dyn Tracer) -> Picture<'a> {
         Picture { world: &self.world, view: &self.view, tracer, settings: &self.settings }
     }
 
@@ -128,20 +129,19 @@ impl Prepared {
     /// Renders. Once `cancel` is true the film comes back as far as it is.
     pub fn render(&self, progress: &dyn Progress, cancel: &AtomicBool) -> Film {
         let film = Mutex::new(self.bare_film());
-        if let Some(tracer) = self.tracer(progress, cancel) {
-            self.render_onto(&film, &*tracer, progress, cancel);
+        if let Some(mut tracer) = self.tracer(progress, cancel) {
+            self.render_onto(&film, &mut *tracer, progress, cancel);
         }
         film.into_inner().unwrap_or_else(|poisoned| poisoned.into_inner())
     }
 
     /// The picture in passes. Photons and irradiance cannot: how many there are depends on the number of samples.
-    pub fn passes<'a>(&'a self, tracer: &'a dyn Tracer) -> Option<Passes<'a>> {
+    pub fn passes(&self) -> Option<Passes<'_>> {
         let goes_on = match self.settings.tracer {
             TracerKind::Raycast | TracerKind::Whitted | TracerKind::MonteCarlo | TracerKind::Path => true,
             TracerKind::Irradiance | TracerKind::Photon => false,
         };
-        (goes_on && self.settings.sampler != SamplerKind::Stratified)
-            .then(|| Passes::new(self.picture(tracer)))
+        (goes_on && self.settings.sampler != SamplerKind::Stratified).then(|| Passes::new(&self.settings))
     }
 
     /// A film on which nothing is yet.
@@ -162,15 +162,21 @@ impl Prepared {
         }
     }
 
-    /// Renders onto a bare film that others may look at meanwhile: every tile that is finished is on it. Noise is filtered at the end.
+    /// Renders onto a bare film that others may look at meanwhile: every tile that is finished is on it, or every pass where the tracer must be
+    /// renewed on the way. Noise is filtered at the end.
     pub fn render_onto(
         &self,
         film: &Mutex<Film>,
-        tracer: &dyn Tracer,
+        tracer: &mut dyn Tracer,
         progress: &dyn Progress,
         cancel: &AtomicBool,
     ) {
-        tiles::render_onto(film, self.picture(tracer), tiles::TILE, progress, cancel);
+        if tracer.lasts() < self.settings.samples {
+            let scene = (&self.world, &self.view, &self.settings);
+            passes::render_renewing(film, scene, tracer, Watch { progress, cancel });
+        } else {
+            tiles::render_onto(film, self.picture(tracer), tiles::TILE, progress, cancel);
+        }
         self.filter(film, progress, cancel);
     }
 }

@@ -157,10 +157,10 @@ fn edges_show_neither_crops_nor_passes() {
     let (settings, camera) = (paths(4, 3), eye());
     let view = View::new(&camera, settings.size).expect("a camera that sees");
     let tracer = prepared(settings.tracer, &room, &view, &settings);
-    let mut passes =
-        Passes::new(Picture { world: &room, view: &view, tracer: &*tracer, settings: &settings });
+    let of_room = Picture { world: &room, view: &view, tracer: &*tracer, settings: &settings };
+    let mut passes = Passes::new(&settings);
     for to in [1, 3, 4] {
-        assert!(passes.advance(to, &(), &AtomicBool::new(false)));
+        assert!(passes.advance(of_room, to, &(), &AtomicBool::new(false)));
     }
     assert_eq!(passes.film().pixels, whole.pixels);
 }

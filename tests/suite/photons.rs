@@ -2,12 +2,18 @@
 
 use crate::stage::*;
 use glam::DVec3;
+use ogee::render::camera::View;
+use ogee::render::film::Film;
+use ogee::render::passes::render_renewing;
 use ogee::render::sampler::Sampler;
-use ogee::render::settings::ResolvedSettings;
+use ogee::render::settings::{Crop, ResolvedSettings};
+use ogee::render::tiles::{Progress, Watch};
 use ogee::scene::*;
 use ogee::world::light::{Aim, Lights, Targets};
 use ogee::world::{Ray, RayKind, World};
 use std::f64::consts::PI;
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 const X: DVec3 = DVec3::X;
 const Y: DVec3 = DVec3::Y;
@@ -143,6 +149,55 @@ fn photons_leave_the_same_picture_on_any_number_of_threads() {
     let one = of(1);
     assert!(one.iter().any(|c| c.x > 0.5), "the caustic is seen");
     assert!([2, 3, 8].into_iter().all(|threads| of(threads) == one));
+}
+
+/// Calls the work off when photons are shot anew, if asked to.
+struct Renewals {
+    calls_off: bool,
+    cancel: AtomicBool,
+    seen: AtomicUsize,
+}
+
+impl Progress for Renewals {
+    fn phase(&self, name: &'static str) {
+        if name == "photons" {
+            self.seen.fetch_add(1, Ordering::Relaxed);
+            self.cancel.fetch_or(self.calls_off, Ordering::Relaxed);
+        }
+    }
+
+    fn tiles(&self, _done: usize, _total: usize) {}
+}
+
+#[test]
+fn samples_that_one_map_is_not_made_for_have_maps_of_their_own() {
+    let room = world(vec![object(sphere(DVec3::ZERO, 1.0), &glowing_and(1.0, 0.5))]);
+    let eye = camera(DVec3::new(0.3, 0.1, -0.2), X, 60.0);
+    let of = |threads, calls_off, samples, error| {
+        let size = [6, 5];
+        let settings = ResolvedSettings {
+            threads: Some(threads),
+            error,
+            size,
+            crop: Crop::all(size),
+            ..photons(samples, 3)
+        };
+        let view = View::new(&eye, size).expect("a camera that sees");
+        let mut tracer = prepared(TracerKind::Photon, &room, &view, &settings);
+        let film = Mutex::new(Film::new(size, settings.crop));
+        let looks_on = Renewals { calls_off, cancel: AtomicBool::new(false), seen: AtomicUsize::new(0) };
+        let watch = Watch { progress: &looks_on, cancel: &looks_on.cancel };
+        render_renewing(&film, (&room, &view, &settings), &mut *tracer, watch);
+        (film.into_inner().unwrap(), looks_on.seen.into_inner())
+    };
+    let (all, renewals) = of(1, false, 200, None);
+    assert_eq!((renewals, all.report.taken.least, all.is_complete()), (1, 200, true));
+    assert_eq!(all.pixels, of(3, false, 200, None).0.pixels);
+    let (first, _) = of(1, false, 128, None);
+    assert_ne!(all.pixels, first.pixels);
+    assert_eq!(of(1, true, 200, None).0.pixels, first.pixels, "what was whole is kept");
+    let (enough, renewals) = of(1, false, 4096, Some(0.5));
+    assert_eq!((renewals, enough.report.taken.most, enough.is_complete()), (0, 32, true));
 }
 
 #[test]

@@ -242,9 +242,9 @@ fn passes_come_to_the_same(tracer: TracerKind) {
     let made = prepared(tracer, &world, &view, &most);
     let cancel = AtomicBool::new(false);
     let whole = Picture { world: &world, view: &view, tracer: &*made, settings: &most };
-    let mut passes = Passes::new(whole);
+    let mut passes = Passes::new(&most);
     for n in [2, 4, 6] {
-        assert!(passes.advance(n, &(), &cancel));
+        assert!(passes.advance(whole, n, &(), &cancel));
         let fixed = ResolvedSettings { samples: n, ..most };
         let (film, at_once) = (passes.film(), render(Picture { settings: &fixed, ..whole }, &(), &cancel));
         assert!(film.is_complete());
@@ -252,7 +252,7 @@ fn passes_come_to_the_same(tracer: TracerKind) {
         assert_eq!(film.report, at_once.report);
     }
     cancel.store(true, Ordering::Relaxed);
-    assert!(!passes.advance(8, &(), &cancel), "cancelled");
+    assert!(!passes.advance(whole, 8, &(), &cancel), "cancelled");
     assert_eq!(passes.film().share_finished(), 0.0, "none has eight samples");
 }
 

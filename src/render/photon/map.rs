@@ -292,17 +292,23 @@ mod tests {
     }
 
     #[test]
-    fn even_light_is_estimated_without_bias() {
-        let (n, k) = (200_000, 8);
+    fn even_light_is_estimated_without_bias_and_varies_by_the_root_of_the_photons() {
+        let n = 400_000;
         let map = map_of(n);
-        let points = 4000u64;
-        let of = |i| {
-            let at = DVec3::new(0.1 + 0.8 * unit(1_000_000 + i), 0.1 + 0.8 * unit(2_000_000 + i), 0.0);
-            map.gather(&query(at, k), false, |_| Rgb::ONE).unwrap().x / n as f64
-        };
-        let mean = (0..points).map(of).sum::<f64>() / points as f64;
-        // One estimate varies by 1/√(k − 2); k photons in the sum would be 1/7 too many.
-        assert!((mean - 1.0).abs() < 4.0 / (6.0 * points as f64).sqrt(), "{mean}");
+        for k in [8, 16, 64] {
+            let points = 40_000 / k as u64 * 8;
+            let of = |i| {
+                let at = DVec3::new(0.1 + 0.8 * unit(1_000_000 + i), 0.1 + 0.8 * unit(2_000_000 + i), 0.0);
+                map.gather(&query(at, k), false, |_| Rgb::ONE).unwrap().x / n as f64
+            };
+            let found: Vec<f64> = (0..points).map(of).collect();
+            let mean = found.iter().sum::<f64>() / points as f64;
+            // With k photons in the sum it would be 1/(k − 1) too much.
+            assert!((mean - 1.0).abs() < 0.008, "{k}: {mean}");
+            let squares = found.iter().map(|x| (x - mean) * (x - mean)).sum::<f64>();
+            let varies = (squares / points as f64).sqrt() * (k as f64 - 2.0).sqrt();
+            assert!((varies - 1.0).abs() < 0.1, "{k}: {varies}");
+        }
     }
 
     #[test]

@@ -28,6 +28,8 @@ pub struct Shooting<'a> {
     pub depth: u32,
     /// Of the random numbers.
     pub seed: u64,
+    /// Whose numbers are its own.
+    pub round: u32,
     /// Only light that came by mirrors and glass alone, and what it meets first after them.
     pub caustics: bool,
     /// Who looks on.
@@ -71,7 +73,10 @@ const CHUNK: u32 = 1 << 8;
 /// Rays of which the power of lights is measured, and of each at most.
 const PROBES: [usize; 2] = [1 << 16, 1 << 10];
 
-/// The column of random numbers that measure, beside those of the two maps.
+/// Columns of random numbers of a round: of the two maps and, in the first, of what is measured.
+const COLUMNS: u32 = 3;
+
+/// The last of them.
 const PROBING: u32 = 2;
 
 /// How often lights are chosen that are aimed: by what some rays of each carry.
@@ -117,7 +122,8 @@ impl Shooting<'_> {
     }
 
     fn shoot(&self, path: u32, photons: &mut Vec<Photon>) -> Sampled<()> {
-        let mut sampler = Sampler::new(self.seed, u32::from(self.caustics), rows::PHOTONS, path);
+        let column = self.round.wrapping_mul(COLUMNS) + u32::from(self.caustics);
+        let mut sampler = Sampler::new(self.seed, column, rows::PHOTONS, path);
         let (which, place, way) = (sampler.next_2d(), sampler.next_2d(), sampler.next_2d());
         let Some((i, often)) = self.choice.pick(which.x) else { return Ok(()) };
         let light = &self.lights.lights[i];

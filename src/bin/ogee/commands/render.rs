@@ -15,6 +15,7 @@ use ogee::render::film::Film;
 use ogee::render::output::Format;
 use ogee::render::passes::{self, Passes};
 use ogee::render::settings::ResolvedSettings;
+use ogee::render::tiles::Picture;
 use ogee::render::{Tracer, adaptive};
 use ogee::scene::{RenderSettings, SamplerKind, TracerKind};
 use ogee::session::Evaluated;
@@ -180,9 +181,9 @@ fn render(
         move || rescue(film.get().map(|film| film.lock().unwrap_or_else(PoisonError::into_inner)).as_deref())
     };
     interrupt::while_rendering(rescue, || {
-        let tracer = prepared.tracer(bar, &interrupt::CANCEL)?;
+        let mut tracer = prepared.tracer(bar, &interrupt::CANCEL)?;
         let film = film.get_or_init(|| Mutex::new(prepared.bare_film()));
-        expose(args, prepared, &*tracer, film, bar);
+        expose(args, prepared, &mut *tracer, film, bar);
         Some(())
     });
     let film = Arc::into_inner(film).expect("who would have saved it is gone").into_inner()?;
@@ -190,27 +191,27 @@ fn render(
 }
 
 /// Renders onto a bare film, in passes where there is a budget.
-fn expose(args: &Render, prepared: &Prepared, tracer: &dyn Tracer, film: &Mutex<Film>, bar: &Bar) {
-    match args.budget.and_then(|seconds| Some((seconds, prepared.passes(tracer)?))) {
+fn expose(args: &Render, prepared: &Prepared, tracer: &mut dyn Tracer, film: &Mutex<Film>, bar: &Bar) {
+    match args.budget.and_then(|seconds| Some((seconds, prepared.passes()?))) {
         Some((seconds, passes)) => {
-            within(seconds, passes, prepared.settings.samples, film, bar);
+            within(seconds, passes, prepared.picture(tracer), film, bar);
             prepared.filter(film, bar, &interrupt::CANCEL);
         }
         None => prepared.render_onto(film, tracer, bar, &interrupt::CANCEL),
     }
 }
 
-/// Takes samples for so many seconds, at most `most` a pixel. The first pass is made in any case; a pass that is interrupted leaves the one before.
-fn within(budget: f64, mut passes: Passes<'_>, most: u32, film: &Mutex<Film>, bar: &Bar) {
+/// Takes samples for so many seconds, at most those of the settings. The first pass is made in any case; a pass that is interrupted leaves the one before.
+fn within(budget: f64, mut passes: Passes<'_>, picture: Picture<'_>, film: &Mutex<Film>, bar: &Bar) {
     let start = Instant::now();
     let mut to = Some(passes::FIRST);
     while let Some(n) = to {
-        let is_whole = passes.advance(n, bar, &interrupt::CANCEL);
+        let is_whole = passes.advance(picture, n, bar, &interrupt::CANCEL);
         if is_whole || n == passes::FIRST {
             *film.lock().unwrap_or_else(PoisonError::into_inner) = passes.film();
         }
         let used = start.elapsed().as_secs_f64();
-        to = passes::next(n, used, budget - used, most).filter(|_| is_whole);
+        to = passes::next(n, used, budget - used, picture.settings.samples).filter(|_| is_whole);
     }
 }
 
