@@ -73,6 +73,22 @@ fn a_white_box_has_the_radiosity_of_its_form_factors() {
     }
 }
 
+#[test]
+fn a_floor_in_the_sun_lights_what_is_above_it_as_its_form_factor_says() {
+    // Photons that fell as evenly as their numbers are would be told too few: the farthest of the nearest lies beyond where chance would put it.
+    let half = 2.0;
+    let floor = object(rect(DVec3::ZERO, half * X, -half * Z), &diffuse(0.8));
+    let plate = object(rect(Y, 0.02 * X, 0.02 * Z), &diffuse(0.5));
+    let world = world(vec![floor, plate, sun(DVec3::new(3.0, -1.0, 0.0), 5.0 * 10.0f64.sqrt())]);
+    // 5 on the floor. From above its middle a square of half side a at distance 1 fills 4/π · a/√(1 + a²) · atan(a/√(1 + a²)).
+    let leg = half / (1.0 + half * half).sqrt();
+    let filled = 4.0 / PI * leg * leg.atan();
+    let exact = 0.5 * filled * 0.8 * 5.0 / PI;
+    let eye = DVec3::new(0.5, 0.6, 0.3);
+    let found = by(|seed| photons(64, seed), &world, eye, &[Y]);
+    assert!((found - exact).abs() < 0.01 * exact, "{found}, truly {exact}");
+}
+
 /// A floor in the shadow of a slab of glass under the sun.
 fn under_glass() -> World {
     let slab = cuboid(DVec3::new(-1.0, 1.0, -1.0), DVec3::new(1.0, 1.5, 1.0));

@@ -6,7 +6,7 @@ use crate::render::medium::Inside;
 use crate::render::path::survival;
 use crate::render::sampler::{Sampler, rows};
 use crate::render::tiles::Watch;
-use crate::scene::Rgb;
+use crate::scene::{Rgb, SamplerKind};
 use crate::world::bsdf::{Bounce, Bsdf};
 use crate::world::light::{Aim, Choice, Light, Lights};
 use crate::world::texture::Sampled;
@@ -123,7 +123,8 @@ impl Shooting<'_> {
 
     fn shoot(&self, path: u32, photons: &mut Vec<Photon>) -> Sampled<()> {
         let column = self.round.wrapping_mul(COLUMNS) + u32::from(self.caustics);
-        let mut sampler = Sampler::new(self.seed, column, rows::PHOTONS, path);
+        let mut sampler =
+            Sampler::new(self.seed, column, rows::PHOTONS, path).of_kind(SamplerKind::Independent, 1);
         let (which, place, way) = (sampler.next_2d(), sampler.next_2d(), sampler.next_2d());
         let Some((i, often)) = self.choice.pick(which.x) else { return Ok(()) };
         let light = &self.lights.lights[i];
