@@ -56,6 +56,7 @@ mod photon;
 mod pixel;
 pub mod sampler;
 pub mod settings;
+mod suspect;
 pub mod tiles;
 pub mod whitted;
 

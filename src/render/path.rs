@@ -286,7 +286,9 @@ impl Path {
         let mut bsdf = Bsdf::BARE;
         bsdf.fill(world, hit, &walk.ray)?;
         walk.sampler.first.look(&bsdf);
-        self.arrive(world, hit, &bsdf, walk)
+        let goes_on = self.arrive(world, hit, &bsdf, walk);
+        walk.sampler.suspect.look(hit.primitive, [walk.sum, walk.weight]);
+        goes_on
     }
 
     /// Adds what a surface sends along the path's ray, and goes on from there. False where the path ends.

@@ -6,14 +6,13 @@ use super::camera::View;
 use super::features::FeatureSum;
 use super::film::{Fault, Film, PixelSum, Report, dimmed};
 use super::filter;
-use super::outline;
+use super::outline::{self, Emission};
 use super::sampler::Sampler;
 use super::settings::ResolvedSettings;
 use super::tiles::Picture;
-use crate::diag::Span;
 use crate::scene::Rgb;
+use crate::world::Ray;
 use crate::world::texture::TextureFault;
-use crate::world::{Ray, World};
 use glam::DVec2;
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -85,9 +84,7 @@ impl Pixel {
 
     /// Takes the next sample by its numbers, and turns them to the one after it.
     fn take(&mut self, picture: Picture<'_>, sampler: &mut Sampler, report: &mut Report) -> Rgb {
-        let ray = camera_ray(picture, self.place, sampler);
-        let emission = outline::emission(picture, self.place, sampler);
-        let found = ray.map_or(Rgb::ZERO, |ray| picture.tracer.radiance(picture.world, ray, sampler));
+        let (emission, found) = traced(picture, self.place, sampler);
         let radiance = match picture.settings.clamp {
             Some(most) => {
                 let left = emission.left + dimmed(most, found);
@@ -98,8 +95,8 @@ impl Pixel {
         };
         let before = self.sum.non_finite;
         self.sum.add(radiance);
-        if let (true, Some(ray)) = (self.sum.non_finite > before, ray) {
-            note_non_finite(picture.world, ray, self.place, report);
+        if self.sum.non_finite > before {
+            note_non_finite(picture, self.place, sampler, report);
         }
         if let Some(features) = &mut self.features {
             features.add(picture.settings.kept(), picture.world, sampler.first, radiance);
@@ -120,6 +117,13 @@ impl Pixel {
         report.add_undefined(Fault { pixel: self.place, count: 1, span, kind });
         Film::UNDEFINED
     }
+}
+
+/// What rays for outlines find of a sample, and what its own ray does.
+fn traced(picture: Picture<'_>, place: [u32; 2], sampler: &mut Sampler) -> (Emission, Rgb) {
+    let ray = camera_ray(picture, place, sampler);
+    let emission = outline::emission(picture, place, sampler);
+    (emission, ray.map_or(Rgb::ZERO, |ray| picture.tracer.radiance(picture.world, ray, sampler)))
 }
 
 /// The ray of a sample: through the pixel's centre for the only one, else through a point that its filter chooses.
@@ -149,16 +153,20 @@ pub(super) fn ray_through(view: &View, place: DVec2, sampler: &mut Sampler) -> O
     view.ray(place, lens)
 }
 
-/// Counts a sample that was not finite, and finds out whose it was by asking again what the camera's ray meets.
-fn note_non_finite(world: &World, ray: Ray, pixel: [u32; 2], report: &mut Report) {
+/// Counts a sample that was not finite, and finds out whose fault the first was by tracing it again.
+fn note_non_finite(picture: Picture<'_>, pixel: [u32; 2], sampler: &Sampler, report: &mut Report) {
     report.non_finite += 1;
-    match &mut report.first_non_finite {
-        None => report.first_non_finite = Some(Fault { pixel, count: 1, span: seen(world, ray), kind: None }),
-        Some(first) => first.count += 1,
+    if let Some(first) = &mut report.first_non_finite {
+        first.count += 1;
+        return;
     }
-}
-
-fn seen(world: &World, ray: Ray) -> Option<Span> {
-    let hit = world.closest(&ray)?;
-    world.provenance(hit.primitive).map(|p| p.span)
+    let suspect = |emission_rays| {
+        let mut again = sampler.accusing(emission_rays);
+        traced(picture, pixel, &mut again);
+        again.suspect.found()
+    };
+    // What is seen to emit may have been found by other rays.
+    let found = suspect(sampler.emission_rays).or_else(|| suspect(0));
+    let provenance = found.and_then(|primitive| picture.world.provenance(primitive));
+    report.first_non_finite = Some(Fault { pixel, count: 1, span: provenance.map(|p| p.span), kind: None });
 }

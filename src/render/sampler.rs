@@ -9,6 +9,7 @@
 //! in each cell of a grid over all samples of the pixel, `independent` has points that know nothing of one another.
 
 use super::features::First;
+use super::suspect::Suspect;
 use crate::scene::SamplerKind;
 use crate::world::texture::TextureFault;
 use glam::DVec2;
@@ -32,6 +33,8 @@ pub struct Sampler {
     pub undefined: Option<TextureFault>,
     /// What the camera's ray met first, where that is asked for.
     pub first: First,
+    /// Whose fault it is that the sample is not finite, where that is asked for.
+    pub suspect: Suspect,
     /// How many other rays find the radiance that the camera sees a surface emit; none where its own ray does.
     pub emission_rays: u32,
 }
@@ -96,8 +99,14 @@ impl Sampler {
             rays: RayCounts::default(),
             undefined: None,
             first: First::Unasked,
+            suspect: Suspect::Unasked,
             emission_rays: 0,
         }
+    }
+
+    /// The same sample from its first number on, of which it is asked whose fault it is.
+    pub fn accusing(&self, emission_rays: u32) -> Sampler {
+        Sampler { dimension: 0, first: First::Unasked, suspect: Suspect::Sought, emission_rays, ..*self }
     }
 
     /// The same sample by numbers of another kind, of so many of its pixel.

@@ -163,7 +163,9 @@ impl Whitted {
         if self.second_rays && !last && bsdf.goes_on() {
             self.branch(hit, bsdf, &Task { weight, ..*task }, tasks, sampler);
         }
-        Ok(weight * radiance)
+        let sent = weight * radiance;
+        sampler.suspect.look(hit.primitive, [sent, weight]);
+        Ok(sent)
     }
 
     /// The mirrored and the bent ray of a hit.

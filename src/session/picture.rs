@@ -194,7 +194,7 @@ fn not_finite(fault: &Fault) -> Diagnostic {
     let message =
         format!("{samples} infinite or not a number, and left out; the first is of pixel ({x}, {y})");
     Diagnostic::new(Code::NonFiniteSample, fault.span, message)
-        .label("seen there")
+        .label("here")
         .hint("look for a light or a material with a number that is far too large")
 }
 
