@@ -1,7 +1,8 @@
 //! What records of irradiance ask of paths: where the camera first sees what is matt, and what arrives there from other matt
 //! surfaces along a direction.
 
-use super::{Last, Path, Stage, Walk};
+use super::Path;
+use super::walk::{Last, Stage, Walk};
 use crate::render::irradiance::Records;
 use crate::render::medium::Inside;
 use crate::render::sampler::Sampler;
