@@ -4,29 +4,54 @@
 #[cfg(target_arch = "x86_64")]
 pub(crate) mod lanes;
 
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::{AtomicU8, Ordering};
 
-static BASELINE_ONLY: AtomicBool = AtomicBool::new(false);
+/// What there is, as bits; [`UNKNOWN`] until somebody asks. One number, as every ray asks.
+static FOUND: AtomicU8 = AtomicU8::new(UNKNOWN);
+
+const UNKNOWN: u8 = 1;
+const AVX2: u8 = 2;
+const FMA: u8 = 4;
 
 /// From now on as if the processor had nothing beyond what all of its kind have.
 pub fn keep_to_baseline() {
-    BASELINE_ONLY.store(true, Ordering::Relaxed);
+    FOUND.store(0, Ordering::Relaxed);
 }
 
 /// Whether AVX2 and fused products are there and may be used. Fused products round once: for what no result shows, such as tests of boxes.
 #[inline(always)]
 pub fn has_avx2_and_fma() -> bool {
-    #[cfg(target_arch = "x86_64")]
-    return has_avx2() && std::arch::is_x86_feature_detected!("fma");
-    #[cfg(not(target_arch = "x86_64"))]
-    false
+    found() & (AVX2 | FMA) == AVX2 | FMA
 }
 
 /// Whether AVX2 is there and may be used.
 #[inline(always)]
 pub fn has_avx2() -> bool {
+    found() & AVX2 != 0
+}
+
+#[inline(always)]
+fn found() -> u8 {
+    match FOUND.load(Ordering::Relaxed) {
+        UNKNOWN => find(),
+        found => found,
+    }
+}
+
+#[cold]
+#[inline(never)]
+fn find() -> u8 {
     #[cfg(target_arch = "x86_64")]
-    return !BASELINE_ONLY.load(Ordering::Relaxed) && std::arch::is_x86_feature_detected!("avx2");
+    let there = {
+        let (avx2, fma) =
+            (std::arch::is_x86_feature_detected!("avx2"), std::arch::is_x86_feature_detected!("fma"));
+        (u8::from(avx2) * AVX2) | (u8::from(fma) * FMA)
+    };
     #[cfg(not(target_arch = "x86_64"))]
-    false
+    let there = 0;
+    // Whoever was faster has found the same, or has been told to keep to the baseline.
+    match FOUND.compare_exchange(UNKNOWN, there, Ordering::Relaxed, Ordering::Relaxed) {
+        Ok(_) => there,
+        Err(found) => found,
+    }
 }
