@@ -1,16 +1,17 @@
 //! What a traversal has still to visit: a stack of which the first entries need no allocation and deeper ones spill.
 
-/// A stack; `N` entries are held in place, the rest in a vector that its owner lends: apart from it, so that the length stays in a register.
+/// A stack; `N` entries need no allocation, the rest are in a vector. Its owner lends both: apart from it, so that the length stays in a register.
 pub(super) struct Stack<'s, T, const N: usize> {
-    entries: [T; N],
+    entries: &'s mut [T; N],
     len: usize,
     spilled: &'s mut Vec<T>,
 }
 
-impl<'s, T: Copy + Default, const N: usize> Stack<'s, T, N> {
+impl<'s, T: Copy, const N: usize> Stack<'s, T, N> {
+    /// Empty, whatever `entries` holds.
     #[inline(always)]
-    pub fn new(spilled: &'s mut Vec<T>) -> Self {
-        Stack { entries: [T::default(); N], len: 0, spilled }
+    pub fn new(entries: &'s mut [T; N], spilled: &'s mut Vec<T>) -> Self {
+        Stack { entries, len: 0, spilled }
     }
 
     #[inline(always)]
@@ -23,15 +24,14 @@ impl<'s, T: Copy + Default, const N: usize> Stack<'s, T, N> {
         }
     }
 
+    /// The last entry; those that spilled come last of all.
     #[inline(always)]
     pub fn pop(&mut self) -> Option<T> {
-        if self.len == N
-            && let Some(entry) = unspill(self.spilled)
-        {
-            return Some(entry);
-        }
-        self.len = self.len.checked_sub(1)?;
-        self.entries.get(self.len).copied()
+        let Some(len) = self.len.checked_sub(1) else {
+            return if self.spilled.is_empty() { None } else { unspill(self.spilled) };
+        };
+        self.len = len;
+        self.entries.get(len).copied()
     }
 
     /// The last entry that still matters; those above it are dropped.
@@ -75,13 +75,13 @@ mod tests {
     use super::Stack;
 
     #[test]
-    fn entries_come_back_last_first_also_where_they_spill() {
-        let mut spilled = Vec::new();
-        let mut stack = Stack::<u32, 3>::new(&mut spilled);
+    fn entries_come_back_last_first_and_then_those_that_spilled() {
+        let (mut held, mut spilled) = ([0; 3], Vec::new());
+        let mut stack = Stack::<u32, 3>::new(&mut held, &mut spilled);
         for round in 1..8 {
             (0..round).for_each(|i| stack.push(i));
             let all: Vec<u32> = std::iter::from_fn(|| stack.pop()).collect();
-            assert_eq!(all, (0..round).rev().collect::<Vec<_>>());
+            assert_eq!(all, (0..round.min(3)).rev().chain((3..round).rev()).collect::<Vec<_>>());
         }
         (0..7).for_each(|i| stack.push(i));
         assert_eq!(stack.next(|i| *i < 2), Some(1));

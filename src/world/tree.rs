@@ -49,7 +49,7 @@ impl Tree {
         }
     }
 
-    /// The items in the order in which leaves name them.
+    /// The items in the order in which leaves name them; see [`bvh::Tree::order`].
     #[inline]
     pub fn order(&self) -> &[u32] {
         match self {

@@ -106,7 +106,7 @@ impl<'m> Subject<'m> {
     /// How often leaves name triangles.
     pub fn references(&self) -> usize {
         match &self.tree {
-            Tree::Bvh(tree) => tree.order().len(),
+            Tree::Bvh(_) => self.mesh.triangles.len(),
             Tree::KdTree(tree) => tree.reference_count(),
         }
     }
@@ -184,6 +184,6 @@ impl Local {
     #[inline]
     fn new(line: &Line) -> Option<Local> {
         let (ray, per_line) = LocalRay::new(line.origin, line.direction)?;
-        Some(Local { ray, per_line, limit: line.t_max.next_down() * per_line })
+        Some(Local { ray, per_line, limit: line.t_max.min(f64::MAX) * per_line })
     }
 }

@@ -1,6 +1,6 @@
 //! What is the hierarchy's own; what every tree must do is in the tests of [`crate::world::tree`].
 
-use super::{Tree, clip};
+use super::{Pricing, Tree, clip};
 use crate::math::Aabb;
 use crate::math::exact::Double;
 use crate::math::random::Random;
@@ -93,6 +93,33 @@ fn the_tree_is_the_same_on_any_number_of_threads() {
         pool.install(made).map(|tree| (tree.order().to_vec(), format!("{:?}", tree.nodes)))
     };
     assert!(on(1) == on(3));
+}
+
+#[test]
+fn leaves_of_triangles_begin_at_multiples_of_what_is_tested_together() {
+    let boxes = boxes(5000, DVec3::ZERO, 3);
+    for tree in [
+        Tree::build_of_triangles(boxes.len(), |i| boxes[i]),
+        Tree::build_bottom_up(boxes.len(), |i| boxes[i]),
+    ] {
+        let mut named = Vec::new();
+        for node in &tree.nodes {
+            for slot in (0..8).filter(|slot| node.count(*slot) > 0) {
+                let first = node.child(slot) as usize;
+                assert_eq!(first % Pricing::OF_TRIANGLES.at_once, 0, "a leaf begins at {first}");
+                named.extend_from_slice(&tree.order()[first..first + node.count(slot) as usize]);
+            }
+        }
+        named.sort_unstable();
+        assert!(named.into_iter().eq(0..boxes.len() as u32), "every item is in one leaf");
+    }
+}
+
+#[test]
+fn items_that_are_tested_together_cost_full_steps() {
+    let by = |pricing: Pricing| [0.0, 1.0, 3.0, 4.0, 5.0, 8.0, 9.0, 1e6 + 1.0].map(|n| pricing.tests(n));
+    assert_eq!(by(Pricing::OF_TRIANGLES), [0.0, 4.0, 4.0, 4.0, 8.0, 8.0, 12.0, 1e6 + 4.0]);
+    assert_eq!(by(Pricing::OF_ITEMS), [0.0, 1.0, 3.0, 4.0, 5.0, 8.0, 9.0, 1e6 + 1.0]);
 }
 
 #[test]

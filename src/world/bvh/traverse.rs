@@ -11,7 +11,7 @@ use super::{Node, Tree, WIDTH};
 use crate::math::Aabb;
 use crate::math::error::gamma;
 use crate::world::stack::Stack;
-use entry::{Entry, Narrow};
+use entry::Entry;
 use glam::DVec3;
 use std::ops::Range;
 
@@ -90,16 +90,16 @@ fn child_of(entry: Pending) -> Child {
 /// The children that are still to be visited.
 type Waiting<'s> = Stack<'s, Pending, STACK>;
 
-/// The last child that begins before the limit.
+/// The last that begins at such a distance, and all before it.
 #[inline(always)]
-fn next(stack: &mut Waiting, limit: f32) -> Option<Child> {
-    let entry = stack.next(|entry| f32::from_bits((entry >> 32) as u32 & !SLOT) <= limit)?;
-    Some(child_of(entry))
+fn last_within(limit: f32) -> Pending {
+    // Of a negative one, all; before which nothing is met.
+    u64::from(limit.to_bits() | SLOT) << 32 | u64::from(u32::MAX)
 }
 
 /// Pushes the children that the ray meets but the nearest, farther ones first; gives the nearest.
 #[inline(always)]
-fn enter(tree: &Tree, stack: &mut Waiting, node: u32, (mut mask, near): Met) -> Option<Child> {
+fn enter(nodes: &[Node], stack: &mut Waiting, node: u32, (mut mask, near): Met) -> Option<Child> {
     if mask == 0 {
         return None;
     }
@@ -109,28 +109,35 @@ fn enter(tree: &Tree, stack: &mut Waiting, node: u32, (mut mask, near): Met) -> 
         (slot, mask == 0)
     };
     // Most often there is one, which is found before its distance is.
-    let (slot, mut is_last) = take();
+    let (slot, is_last) = take();
     if is_last {
         return Some((node, slot));
     }
-    let is_large = tree.nodes.len() >= MANY;
+    let is_large = nodes.len() >= MANY;
     let key = |slot: u32| {
         if is_large {
-            wide::fetch(&tree.nodes, tree.nodes[node as usize].child(slot as usize));
+            wide::fetch(nodes, nodes[node as usize].child(slot as usize));
         }
         pending(near[slot as usize], (node, slot))
     };
-    let mut nearest = key(slot);
+    let first = key(slot);
+    let (slot, mut is_last) = take();
+    let second = key(slot);
+    let mut nearest = first.min(second);
+    // And then two, of which one waits.
     let bottom = stack.len();
-    while !is_last {
-        let next;
-        (next, is_last) = take();
-        let next = key(next);
-        stack.push(nearest.max(next));
-        nearest = nearest.min(next);
+    stack.push(first.max(second));
+    if !is_last {
+        while !is_last {
+            let slot;
+            (slot, is_last) = take();
+            let next = key(slot);
+            stack.push(nearest.max(next));
+            nearest = nearest.min(next);
+        }
+        // Where some spilled, their order is lost, which costs time only.
+        sort_far_first(stack.above(bottom));
     }
-    // Where some spilled, their order is lost, which costs time only.
-    sort_far_first(stack.above(bottom));
     Some(child_of(nearest))
 }
 
@@ -166,6 +173,12 @@ impl Tree {
         }
     }
 
+    /// True where there are nodes and every item hangs under one: none has a box that is not finite.
+    #[inline]
+    pub fn is_whole(&self) -> bool {
+        !self.nodes.is_empty() && self.bounded == self.order.len()
+    }
+
     /// Offers what hangs under no node; gives what limits the rest, none where that does not matter.
     #[inline(always)]
     fn offer_loose(&self, mut t_max: f64, leaf: &mut impl FnMut(Range<usize>, f64) -> f64) -> Option<f64> {
@@ -180,22 +193,22 @@ impl Tree {
 #[inline(always)]
 fn walk(
     tree: &Tree,
-    [origin, direction]: [&DVec3; 2],
+    entry: Entry,
     mut t_max: f64,
-    meets: impl Fn(&Narrow, &Node, f32) -> Met,
+    meets: impl Fn(&Node, f32) -> Met,
     leaf: &mut impl FnMut(Range<usize>, f64) -> f64,
 ) {
-    let Some(entry) = Entry::new(tree, origin, direction, t_max) else { return };
-    let (ray, nodes) = (Narrow::new(&entry, direction), &tree.nodes[..]);
+    let nodes = &tree.nodes[..];
     let mut limit = entry.limit(t_max);
-    let mut spilled = Vec::new();
-    let mut stack = Waiting::new(&mut spilled);
+    let mut last = last_within(limit);
+    let (mut held, mut spilled) = ([0; STACK], Vec::new());
+    let mut stack = Waiting::new(&mut held, &mut spilled);
     let mut at = 0;
     loop {
-        let met = meets(&ray, &nodes[at as usize], limit);
-        let mut waiting = enter(tree, &mut stack, at, met);
+        let met = meets(&nodes[at as usize], limit);
+        let mut waiting = enter(nodes, &mut stack, at, met);
         if waiting.is_none() {
-            waiting = next(&mut stack, limit);
+            waiting = stack.next(|entry| *entry <= last).map(child_of);
         }
         loop {
             let Some((node, slot)) = waiting else { return };
@@ -207,15 +220,16 @@ fn walk(
             } else {
                 let first = child as usize;
                 let found = leaf(first..first + count as usize, t_max);
-                if found < 0.0 {
-                    return;
-                }
                 if found < t_max {
+                    if found < 0.0 {
+                        return;
+                    }
                     t_max = found;
                     limit = entry.limit(t_max);
+                    last = last_within(limit);
                 }
             }
-            waiting = next(&mut stack, limit);
+            waiting = stack.next(|entry| *entry <= last).map(child_of);
         }
     }
 }
@@ -224,19 +238,18 @@ fn walk(
 #[inline(always)]
 fn walk_any(
     tree: &Tree,
-    [origin, direction]: [&DVec3; 2],
+    entry: Entry,
     t_max: f64,
-    meets: impl Fn(&Narrow, &Node, f32) -> Met,
+    meets: impl Fn(&Node, f32) -> Met,
     leaf: &mut impl FnMut(Range<usize>) -> bool,
 ) {
-    let Some(entry) = Entry::new(tree, origin, direction, t_max) else { return };
-    let (ray, nodes) = (Narrow::new(&entry, direction), &tree.nodes[..]);
+    let nodes = &tree.nodes[..];
     let limit = entry.limit(t_max);
-    let mut spilled = Vec::new();
-    let mut stack = Stack::<(u32, u32), STACK>::new(&mut spilled);
+    let (mut held, mut spilled) = ([(0u32, 0u32); STACK], Vec::new());
+    let mut stack = Stack::new(&mut held, &mut spilled);
     let mut at = 0;
     loop {
-        let (mut left, _) = meets(&ray, &nodes[at as usize], limit);
+        let (mut left, _) = meets(&nodes[at as usize], limit);
         loop {
             if left == 0 {
                 let Some(waiting) = stack.pop() else { return };

@@ -168,8 +168,8 @@ impl Tree {
         if near > far {
             return;
         }
-        let mut spilled = Vec::new();
-        let mut stack = Stack::<Entry, STACK>::new(&mut spilled);
+        let (mut held, mut spilled) = ([Entry::default(); STACK], Vec::new());
+        let mut stack = Stack::new(&mut held, &mut spilled);
         let mut offered = [u32::MAX; MAILBOXES];
         let mut at = 0;
         loop {

@@ -39,7 +39,8 @@ const AXES: [[usize; 3]; 3] = [[1, 2, 0], [2, 0, 1], [0, 1, 2]];
 impl Sheared {
     /// Prepares a ray.
     pub fn new(ray: &LocalRay) -> Sheared {
-        let (o, d, size) = (ray.origin.to_array(), ray.direction.to_array(), ray.direction.abs());
+        let (o, d): (&[f64; 3], &[f64; 3]) = (ray.origin.as_ref(), ray.direction.as_ref());
+        let size = ray.direction.abs();
         // Without branches: which axis is the largest cannot be foreseen.
         let beyond_x = 2 - usize::from(size.y > size.z);
         let is_x = (size.x > size.y) & (size.x > size.z);
@@ -99,9 +100,10 @@ impl Sheared {
         let inverse = 1.0 / determinant;
         let sum = u * a + v * b + w * c;
         let mut t = sum * self.shear[2] * inverse;
-        let depth = a.abs().max(b.abs()).max(c.abs()) * self.shear[2].abs();
+        let larger = |a: f64, b: f64| if a > b { a } else { b };
+        let depth = larger(larger(a.abs(), b.abs()), c.abs()) * self.shear[2].abs();
         if t.abs() <= depth * NEAR {
-            t = self.distance_by_plane(corners())?;
+            t = distance_by_plane(self.origin, self.direction, corners())?;
         }
         (t > 0.0 && t <= limit).then_some(Meet { t, a: v * inverse, b: w * inverse, face: 0, part: 0 })
     }
@@ -113,38 +115,43 @@ impl Sheared {
         let [u, v, w] = [side(c, b), side(a, c), side(b, a)];
         u != 0 && u == v && v == w
     }
+}
 
-    /// From the triangle's plane through its nearest corner, for rays that start on or beside it; none where that is surely behind.
-    fn distance_by_plane(&self, corners: [DVec3; 3]) -> Option<f64> {
-        if self.is_surely_behind(corners) { None } else { self.precise_distance(corners) }
+/// From the triangle's plane through its nearest corner, for rays that start on or beside it; none where that is surely behind.
+#[inline(never)]
+fn distance_by_plane(origin: DVec3, direction: DVec3, corners: [DVec3; 3]) -> Option<f64> {
+    if is_surely_behind(origin, direction, corners) {
+        None
+    } else {
+        precise_distance(origin, direction, corners)
     }
+}
 
-    /// Whether a triangle's plane is behind the ray's start, whatever plain arithmetic rounds: two products and a difference in the normal,
-    /// three products and two sums with it, and as many again where the accurate normal is used. Most rays that start on a triangle leave it.
-    #[inline(always)]
-    fn is_surely_behind(&self, [a, b, c]: [DVec3; 3]) -> bool {
-        let (e, f, to) = (b - a, c - a, a - self.origin);
-        let reach = |v: DVec3| v.x.abs() + v.y.abs() + v.z.abs();
-        // Of every corner, and of what the normal is made of.
-        let far = reach(to) + reach(e) + reach(f);
-        let size = reach(e) * reach(f) * gamma(16);
-        let n = e.cross(f);
-        let (to_plane, along) = (n.dot(to), n.dot(self.direction));
-        to_plane * along < 0.0
-            && to_plane.abs() > size * far + f64::MIN_POSITIVE
-            && along.abs() > size * reach(self.direction) + f64::MIN_POSITIVE
-    }
+/// Whether a triangle's plane is behind the ray's start, whatever plain arithmetic rounds: two products and a difference in the normal,
+/// three products and two sums with it, and as many again where the accurate normal is used. Most rays that start on a triangle leave it.
+#[inline(always)]
+fn is_surely_behind(origin: DVec3, direction: DVec3, [a, b, c]: [DVec3; 3]) -> bool {
+    let (e, f, to) = (b - a, c - a, a - origin);
+    let reach = |v: DVec3| v.x.abs() + v.y.abs() + v.z.abs();
+    // Of every corner, and of what the normal is made of.
+    let far = reach(to) + reach(e) + reach(f);
+    let size = reach(e) * reach(f) * gamma(16);
+    let n = e.cross(f);
+    let (to_plane, along) = (n.dot(to), n.dot(direction));
+    to_plane * along < 0.0
+        && to_plane.abs() > size * far + f64::MIN_POSITIVE
+        && along.abs() > size * reach(direction) + f64::MIN_POSITIVE
+}
 
-    #[cold]
-    fn precise_distance(&self, corners: [DVec3; 3]) -> Option<f64> {
-        let n = normal_of(corners);
-        let nearest = corners
-            .into_iter()
-            .map(|p| p - self.origin)
-            .min_by(|p, q| p.length_squared().total_cmp(&q.length_squared()))?;
-        let t = n.dot(nearest) / n.dot(self.direction);
-        t.is_finite().then_some(t)
-    }
+#[cold]
+fn precise_distance(origin: DVec3, direction: DVec3, corners: [DVec3; 3]) -> Option<f64> {
+    let n = normal_of(corners);
+    let nearest = corners
+        .into_iter()
+        .map(|p| p - origin)
+        .min_by(|p, q| p.length_squared().total_cmp(&q.length_squared()))?;
+    let t = n.dot(nearest) / n.dot(direction);
+    t.is_finite().then_some(t)
 }
 
 /// Which side of each edge the ray is on, where plain products do not tell.

@@ -4,7 +4,7 @@ use super::boxes::{Boxed, Item, bounds_of};
 use super::split::halve;
 use super::{finish, prepare, put};
 use crate::math::Aabb;
-use crate::world::bvh::{Node, Tree, WIDTH};
+use crate::world::bvh::{Node, Pricing, Tree, WIDTH};
 
 /// Items of a leaf at the most.
 const LEAF: usize = 4;
@@ -18,7 +18,7 @@ impl Tree {
             grow(&mut ready.items, 0, &mut nodes);
         }
         let order = ready.items.iter().map(Item::number).collect();
-        finish(ready, nodes, order)
+        finish(ready, nodes, order, Pricing::OF_TRIANGLES.at_once)
     }
 }
 

@@ -18,7 +18,7 @@ mod subtree;
 
 use super::frame::Frame;
 use super::survey::{BY_ONE_THREAD, is_usable, survey};
-use super::{Node, Tree, WIDTH};
+use super::{Node, Pricing, Tree, WIDTH};
 use crate::math::Aabb;
 use boxes::{Box32, Boxed, Item};
 use rayon::prelude::*;
@@ -50,15 +50,34 @@ fn put(node: &mut Node, slot: usize, bounds: &Box32) {
 }
 
 /// The tree of nodes over items in their order; those without a finite box follow it.
-fn finish(ready: Prepared, mut nodes: Vec<Node>, mut order: Vec<u32>) -> Tree {
+fn finish(ready: Prepared, mut nodes: Vec<Node>, order: Vec<u32>, at_once: usize) -> Tree {
     nodes.shrink_to_fit();
-    let bounded = if nodes.is_empty() { 0 } else { ready.items.len() };
+    let mut order = if at_once > 1 { aligned(&mut nodes, &order, at_once) } else { order };
+    let bounded = if nodes.is_empty() { 0 } else { order.len() };
     let unbounded = !ready.unbounded.is_empty();
     order.extend(ready.unbounded);
     Tree { frame: ready.frame, bounds: ready.bounds, unbounded, nodes, order, bounded }
 }
 
-pub(super) fn build(count: usize, bounds_of: impl Fn(usize) -> Aabb + Sync, node_cost: f32) -> Tree {
+/// The order in which every leaf begins at a multiple of a number, its last item repeated up to the next.
+fn aligned(nodes: &mut [Node], order: &[u32], at_once: usize) -> Vec<u32> {
+    // A leaf has some places to spare.
+    let mut all = Vec::with_capacity(order.len() + order.len() / 3);
+    for node in &mut *nodes {
+        for slot in 0..WIDTH {
+            let (first, count) = (node.child(slot) as usize, node.count(slot));
+            if count > 0 {
+                node.set_child(slot, all.len() as u32, count);
+                all.extend_from_slice(&order[first..first + count as usize]);
+                all.resize(all.len().next_multiple_of(at_once), order[first + count as usize - 1]);
+            }
+        }
+    }
+    // Where there is no node there are no leaves.
+    if nodes.is_empty() { order.to_vec() } else { all }
+}
+
+pub(super) fn build(count: usize, bounds_of: impl Fn(usize) -> Aabb + Sync, pricing: Pricing) -> Tree {
     let mut ready = prepare(count, &bounds_of);
     let items = &mut ready.items;
     let mut order = vec![0; items.len()];
@@ -66,11 +85,11 @@ pub(super) fn build(count: usize, bounds_of: impl Fn(usize) -> Aabb + Sync, node
     // One box would only repeat the bounds. The root is a node even where everything fits a leaf.
     if items.len() > 1 {
         let whole = Part::whole(items);
-        subtree::grow(items, whole, &mut order, &mut nodes, &mut Bins::new(node_cost));
+        subtree::grow(items, whole, &mut order, &mut nodes, &mut Bins::new(pricing));
     } else {
         order = items.iter().map(Item::number).collect();
     }
-    finish(ready, nodes, order)
+    finish(ready, nodes, order, pricing.at_once)
 }
 
 /// The items with a finite box, in order. Made in place: for a million of them a second copy would be felt.

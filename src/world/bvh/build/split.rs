@@ -3,6 +3,7 @@
 
 use super::boxes::{Box32, Boxed, bounds_of, middles_of};
 use super::grid::{Grid, MOST};
+use crate::world::bvh::Pricing;
 use glam::Vec4;
 
 /// Runs up to this length are split in the best of all ways, of which there are 2ⁿ⁻¹ − 1.
@@ -17,13 +18,12 @@ fn bins_for(count: usize) -> usize {
     }
 }
 
-/// What is in the bins of all three axes; kept between splits, as making it costs as much as a small split.
+/// What is in the bins of all three axes; kept between splits, as making it pricing as much as a small split.
 pub(super) struct Bins {
     bounds: [[Box32; 3]; MOST],
     /// How many items, a lane for each axis.
     weight: [[f32; 4]; MOST],
-    /// What a node of its own costs, in tests of the items at hand: below this gain a part is a leaf.
-    pub node_cost: f32,
+    pub pricing: Pricing,
 }
 
 /// The cheapest plane along each axis: the first bin of the right half, and the cost; infinite where there is none.
@@ -34,8 +34,8 @@ struct Planes {
 
 impl Bins {
     /// Of no meaning yet.
-    pub fn new(node_cost: f32) -> Bins {
-        Bins { bounds: [[Box32::EMPTY; 3]; MOST], weight: [[0.0; 4]; MOST], node_cost }
+    pub fn new(pricing: Pricing) -> Bins {
+        Bins { bounds: [[Box32::EMPTY; 3]; MOST], weight: [[0.0; 4]; MOST], pricing }
     }
 
     fn fill<T: Boxed>(&mut self, run: &[T], grid: &Grid, n_bins: usize) {
@@ -57,7 +57,7 @@ impl Bins {
         let mut sum = Sum::EMPTY;
         for bin in (1..n_bins).rev() {
             sum.add(&bounds[bin], weight[bin]);
-            right_cost[bin] = sum.cost();
+            right_cost[bin] = sum.cost(self.pricing);
         }
         let mut sum = Sum::EMPTY;
         let mut best = Planes { bin: Vec4::ZERO, cost: Vec4::INFINITY };
@@ -65,7 +65,7 @@ impl Bins {
         for bin in 1..n_bins {
             sum.add(&bounds[bin - 1], weight[bin - 1]);
             at += Vec4::ONE;
-            let both = sum.cost() + right_cost[bin];
+            let both = sum.cost(self.pricing) + right_cost[bin];
             let is_less = both.cmplt(best.cost);
             best.cost = Vec4::select(is_less, both, best.cost);
             best.bin = Vec4::select(is_less, at, best.bin);
@@ -95,17 +95,17 @@ impl Sum {
         self.weight += Vec4::from_array(weight);
     }
 
-    /// Area times items on each axis; NaN where there is nothing, ∞·0, so that no comparison is won.
+    /// Area times tests on each axis; NaN where there is nothing, ∞·0, so that no comparison is won.
     #[inline(always)]
-    fn cost(&self) -> Vec4 {
-        Box32::areas(&self.bounds) * self.weight
+    fn cost(&self, pricing: Pricing) -> Vec4 {
+        Box32::areas(&self.bounds) * pricing.tests_4(self.weight)
     }
 }
 
 /// A way to split a run.
 struct Best {
     way: Way,
-    /// Area times items, summed over both halves.
+    /// Area times tests, summed over both halves.
     cost: f32,
     /// Of the halves.
     bounds: [Box32; 2],
@@ -121,7 +121,7 @@ enum Way {
 impl Best {
     /// The cheapest split; none where the middles do not spread.
     fn of<T: Boxed>(run: &[T], bins: &mut Bins) -> Option<Best> {
-        if run.len() <= HANDFUL { Best::of_handful(run) } else { Best::of_many(run, bins) }
+        if run.len() <= HANDFUL { Best::of_handful(run, bins.pricing) } else { Best::of_many(run, bins) }
     }
 
     fn of_many<T: Boxed>(run: &[T], bins: &mut Bins) -> Option<Best> {
@@ -137,7 +137,7 @@ impl Best {
     }
 
     /// Over all sets that hold the first but not all.
-    fn of_handful<T: Boxed>(run: &[T]) -> Option<Best> {
+    fn of_handful<T: Boxed>(run: &[T], pricing: Pricing) -> Option<Best> {
         let all = (1usize << run.len()) - 1;
         // Of every set: what it adds to that without its last.
         let mut bounds = [Box32::EMPTY; 1 << HANDFUL];
@@ -148,7 +148,7 @@ impl Best {
             let (one, rest) = (&run[last as usize], set ^ 1 << last);
             bounds[set] = bounds[rest].with(one.bounds());
             weight[set] = weight[rest] + one.weight();
-            cost[set] = bounds[set].area() * weight[set] as f32;
+            cost[set] = bounds[set].area() * pricing.tests(weight[set] as f32);
         }
         let mut best = (0, f32::INFINITY);
         for set in (1..all).step_by(2) {
@@ -212,7 +212,7 @@ pub(super) struct Part {
     depth: u32,
 }
 
-/// What splitting a part costs, in tests of items that come with it or go.
+/// What splitting a part pricing, in tests of items that come with it or go.
 #[derive(Clone, Copy)]
 pub(super) enum Price {
     /// A node of its own, tested by every ray that meets the part.
@@ -264,7 +264,7 @@ impl Part {
                 let area = self.bounds.area();
                 let halves = best.bounds[0].area() + best.bounds[1].area();
                 if self.n_items <= MAX_LEAF
-                    && self.n_items as f32 * area <= best.cost + price.of(area, halves)
+                    && bins.pricing.tests(self.n_items as f32) * area <= best.cost + price.of(area, halves)
                 {
                     return None;
                 }

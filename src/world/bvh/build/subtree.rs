@@ -5,7 +5,7 @@ use super::cells::{Cell, Cells};
 use super::children::{Children, Start};
 use super::put;
 use super::split::{Bins, MAX_LEAF, Part};
-use crate::world::bvh::{Node, WIDTH};
+use crate::world::bvh::{Node, Pricing, WIDTH};
 use rayon::prelude::*;
 
 /// More items than this are first sorted into cells, fewer are split one by one. Measured on a million triangles and on as many
@@ -71,7 +71,7 @@ fn over_cells(
         (cells, order) = (after, order_after);
     }
     let below = if rayon::current_num_threads() > 1 {
-        apart(sorted, runs, nodes, bins.node_cost)
+        apart(sorted, runs, nodes, bins.pricing)
     } else {
         // The detour by parts would give the same nodes.
         runs.into_iter()
@@ -107,11 +107,11 @@ fn apart(
     sorted: &Cells<'_>,
     runs: Vec<(&mut [Cell], Part, &mut [u32])>,
     nodes: &mut Vec<Node>,
-    node_cost: f32,
+    pricing: Pricing,
 ) -> Vec<Option<u32>> {
     let build = |(cells, part, order): (&mut [Cell], Part, &mut [u32])| {
         let mut below = Vec::new();
-        let bins = &mut Bins::new(node_cost);
+        let bins = &mut Bins::new(pricing);
         child_of_cells(sorted, cells, part, order, &mut below, bins).map(|_| below)
     };
     let built: Vec<Option<Vec<Node>>> = runs.into_par_iter().map(build).collect();

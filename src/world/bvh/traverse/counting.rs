@@ -1,9 +1,10 @@
 //! The traversal that tells of each node, for those who measure trees; by operations that every machine has and that round as the widest
 //! instructions do, so that all count alike.
 
+use super::entry::Entry;
 use super::wide::meets_fused;
-use super::{walk, walk_any};
-use crate::world::bvh::Tree;
+use super::{Met, walk, walk_any};
+use crate::world::bvh::{Node, Tree};
 use glam::DVec3;
 use std::cell::Cell;
 use std::ops::Range;
@@ -17,15 +18,8 @@ impl Tree {
         t_max: f64,
         mut leaf: impl FnMut(Range<usize>, f64) -> f64,
     ) -> u64 {
-        let visits = Cell::new(0);
-        let count = |ray: &_, node: &_, limit| {
-            visits.set(visits.get() + 1);
-            meets_fused(ray, node, limit)
-        };
-        if let Some(t_max) = self.offer_loose(t_max, &mut leaf) {
-            walk(self, [&origin, &direction], t_max, count, &mut leaf);
-        }
-        visits.get()
+        let Some(t_max) = self.offer_loose(t_max, &mut leaf) else { return 0 };
+        self.counted([origin, direction], t_max, |entry, meets| walk(self, entry, t_max, meets, &mut leaf))
     }
 
     /// As [`Tree::traverse_any`]; gives how many nodes were visited.
@@ -36,14 +30,26 @@ impl Tree {
         t_max: f64,
         mut leaf: impl FnMut(Range<usize>) -> bool,
     ) -> u64 {
-        let visits = Cell::new(0);
-        let count = |ray: &_, node: &_, limit| {
-            visits.set(visits.get() + 1);
-            meets_fused(ray, node, limit)
-        };
         let mut loose = |range, t_max| if leaf(range) { t_max } else { -1.0 };
-        if let Some(t_max) = self.offer_loose(t_max, &mut loose) {
-            walk_any(self, [&origin, &direction], t_max, count, &mut leaf);
+        let Some(t_max) = self.offer_loose(t_max, &mut loose) else { return 0 };
+        self.counted([origin, direction], t_max, |entry, meets| {
+            walk_any(self, entry, t_max, meets, &mut leaf);
+        })
+    }
+
+    /// How many nodes a walk tests.
+    fn counted(
+        &self,
+        ray: [DVec3; 2],
+        t_max: f64,
+        walk: impl FnOnce(Entry, &dyn Fn(&Node, f32) -> Met),
+    ) -> u64 {
+        let visits = Cell::new(0);
+        if let Some((entry, narrow)) = Entry::entered(self, ray.each_ref(), t_max) {
+            walk(entry, &|node, limit| {
+                visits.set(visits.get() + 1);
+                meets_fused(&narrow, node, limit)
+            });
         }
         visits.get()
     }

@@ -3,7 +3,8 @@
 //! found inside never does. Knows nothing of what is traversed. One of the rooms with unsafe code: there is no other way to such
 //! instructions.
 
-use super::{Met, Narrow, Node, Tree, WIDTH};
+use super::entry::{Entry, Narrow};
+use super::{Met, Node, Tree, WIDTH};
 use glam::DVec3;
 use std::ops::Range;
 
@@ -19,9 +20,14 @@ pub(super) fn walk(
     if crate::math::vectors::has_avx2_and_fma() {
         // SAFETY: the processor has just been found to have what the function is compiled for.
         #[allow(unsafe_code, reason = "code for instructions that not every processor has")]
-        return unsafe { x86::walk_avx2(tree, ray, t_max, leaf) };
+        return unsafe {
+            let [o, d] = ray;
+            x86::walk(tree, o.x, o.y, o.z, d.x, d.y, d.z, t_max, leaf)
+        };
     }
-    super::walk(tree, ray, t_max, meets, leaf);
+    if let Some((entry, narrow)) = Entry::entered(tree, ray, t_max) {
+        super::walk(tree, entry, t_max, |node, limit| meets(&narrow, node, limit), leaf);
+    }
 }
 
 /// [`super::walk_any`] with the widest instructions that there are.
@@ -36,9 +42,14 @@ pub(super) fn walk_any(
     if crate::math::vectors::has_avx2_and_fma() {
         // SAFETY: the processor has just been found to have what the function is compiled for.
         #[allow(unsafe_code, reason = "code for instructions that not every processor has")]
-        return unsafe { x86::walk_any_avx2(tree, ray, t_max, leaf) };
+        return unsafe {
+            let [o, d] = ray;
+            x86::walk_any(tree, o.x, o.y, o.z, d.x, d.y, d.z, t_max, leaf)
+        };
     }
-    super::walk_any(tree, ray, t_max, meets, leaf);
+    if let Some((entry, narrow)) = Entry::entered(tree, ray, t_max) {
+        super::walk_any(tree, entry, t_max, |node, limit| meets(&narrow, node, limit), leaf);
+    }
 }
 
 /// Has the memory of a node brought near. Whatever the index says: that of an item does no harm.
@@ -74,8 +85,7 @@ pub(super) fn meets_fused(ray: &Narrow, node: &Node, limit: f32) -> Met {
 fn meets_by(ray: &Narrow, node: &Node, limit: f32, at: impl Fn(f32, f32, f32) -> f32) -> Met {
     let (mut near, mut far) = ([0.0f32; WIDTH], [limit; WIDTH]);
     for a in 0..3 {
-        let (enter, leave) = ray.rows(a);
-        let (enter, leave) = (&node.rows[enter & 7], &node.rows[leave & 7]);
+        let [enter, leave] = ray.planes(node, a);
         for i in 0..WIDTH {
             let x = at(enter[i], ray.inverse[a], ray.near[a]);
             near[i] = if x > near[i] { x } else { near[i] };
@@ -89,47 +99,173 @@ fn meets_by(ray: &Narrow, node: &Node, limit: f32, at: impl Fn(f32, f32, f32) ->
 
 #[cfg(target_arch = "x86_64")]
 mod x86 {
+    use super::super::entry::{LEAST, NEAR, Rows, STEPS, rows_of};
     use super::*;
-    use crate::math::vectors::lanes::{load_8, store_8};
+    use crate::math::vectors::lanes::{load_3, load_8, store_8};
     use std::arch::x86_64::*;
 
+    impl Tree {
+        /// [`Tree::traverse`] of a tree that is [whole](Tree::is_whole), for callers that are compiled for these instructions themselves: `leaf` becomes a
+        /// part of it, and what both need stays in registers.
+        #[target_feature(enable = "avx2,fma")]
+        #[inline]
+        pub(in crate::world) fn traverse_avx2(
+            &self,
+            origin: DVec3,
+            direction: DVec3,
+            t_max: f64,
+            mut leaf: impl FnMut(Range<usize>, f64) -> f64,
+        ) {
+            if t_max >= 0.0 {
+                walk_avx2(self, [origin, direction], t_max, &mut leaf);
+            }
+        }
+
+        /// [`Tree::traverse_any`], so.
+        #[target_feature(enable = "avx2,fma")]
+        #[inline]
+        pub(in crate::world) fn traverse_any_avx2(
+            &self,
+            origin: DVec3,
+            direction: DVec3,
+            t_max: f64,
+            mut leaf: impl FnMut(Range<usize>) -> bool,
+        ) {
+            if t_max >= 0.0 {
+                walk_any_avx2(self, [origin, direction], t_max, &mut leaf);
+            }
+        }
+    }
+
+    /// The ray number by number, so that it comes in registers: what has just been written so cannot be read as a whole before the cache has it.
     #[target_feature(enable = "avx2,fma")]
-    pub(super) fn walk_avx2(
+    #[allow(clippy::too_many_arguments, reason = "numbers that come in registers")]
+    pub(super) fn walk(
         tree: &Tree,
-        ray: [&DVec3; 2],
+        x: f64,
+        y: f64,
+        z: f64,
+        along_x: f64,
+        along_y: f64,
+        along_z: f64,
         t_max: f64,
         leaf: &mut impl FnMut(Range<usize>, f64) -> f64,
     ) {
-        let meets = |ray: &Narrow, node: &Node, limit| meets_avx2(ray, node, limit);
-        super::super::walk(tree, ray, t_max, meets, leaf);
+        let ray = [DVec3::new(x, y, z), DVec3::new(along_x, along_y, along_z)];
+        walk_avx2(tree, ray, t_max, leaf);
     }
 
+    /// The same in no order.
     #[target_feature(enable = "avx2,fma")]
-    pub(super) fn walk_any_avx2(
+    #[allow(clippy::too_many_arguments, reason = "numbers that come in registers")]
+    pub(super) fn walk_any(
         tree: &Tree,
-        ray: [&DVec3; 2],
+        x: f64,
+        y: f64,
+        z: f64,
+        along_x: f64,
+        along_y: f64,
+        along_z: f64,
         t_max: f64,
         leaf: &mut impl FnMut(Range<usize>) -> bool,
     ) {
-        let meets = |ray: &Narrow, node: &Node, limit| meets_avx2(ray, node, limit);
-        super::super::walk_any(tree, ray, t_max, meets, leaf);
+        let ray = [DVec3::new(x, y, z), DVec3::new(along_x, along_y, along_z)];
+        walk_any_avx2(tree, ray, t_max, leaf);
     }
 
-    /// [`super::meets`], eight children at once. The larger and the smaller of two give their second operand where one is NaN, as
-    /// the comparisons there do.
     #[target_feature(enable = "avx2,fma")]
     #[inline]
-    fn meets_avx2(ray: &Narrow, node: &Node, limit: f32) -> Met {
-        let (mut near, mut far) = (_mm256_setzero_ps(), _mm256_set1_ps(limit));
-        for a in 0..3 {
-            let (enter, leave) = ray.rows(a);
-            let (enter, leave) = (load_8(&node.rows[enter & 7]), load_8(&node.rows[leave & 7]));
-            let inverse = _mm256_set1_ps(ray.inverse[a]);
-            near = _mm256_max_ps(_mm256_fmadd_ps(enter, inverse, _mm256_set1_ps(ray.near[a])), near);
-            far = _mm256_min_ps(_mm256_fmadd_ps(leave, inverse, _mm256_set1_ps(ray.far[a])), far);
+    fn walk_avx2(tree: &Tree, ray: [DVec3; 2], t_max: f64, leaf: &mut impl FnMut(Range<usize>, f64) -> f64) {
+        let Some((entry, narrow)) = entered(tree, ray, t_max) else { return };
+        super::super::walk(tree, entry, t_max, |node, limit| narrow.meets(node, limit), leaf);
+    }
+
+    #[target_feature(enable = "avx2,fma")]
+    #[inline]
+    fn walk_any_avx2(tree: &Tree, ray: [DVec3; 2], t_max: f64, leaf: &mut impl FnMut(Range<usize>) -> bool) {
+        let Some((entry, narrow)) = entered(tree, ray, t_max) else { return };
+        super::super::walk_any(tree, entry, t_max, |node, limit| narrow.meets(node, limit), leaf);
+    }
+
+    /// [`Narrow`], each number eight times.
+    struct Wide {
+        inverse: [__m256; 3],
+        near: [__m256; 3],
+        far: [__m256; 3],
+        rows: &'static Rows,
+    }
+
+    /// [`Entry::entered`], all coordinates at once, with the same roundings.
+    #[target_feature(enable = "avx2,fma")]
+    #[inline]
+    fn entered(tree: &Tree, [origin, direction]: [DVec3; 2], t_max: f64) -> Option<(Entry, Wide)> {
+        let four = |v: DVec3| _mm256_setr_pd(v.x, v.y, v.z, 0.0);
+        let from_center = _mm256_sub_pd(four(origin), load_3(tree.frame.center.as_ref()));
+        let point = _mm256_mul_pd(from_center, _mm256_set1_pd(tree.frame.scale));
+        let size = _mm256_andnot_pd(_mm256_set1_pd(-0.0), point);
+        let is_near = _mm256_cmp_pd::<_CMP_LE_OQ>(size, _mm256_set1_pd(NEAR));
+        if _mm256_movemask_pd(is_near) != 0b1111 {
+            let (entry, narrow) = from_afar(tree, [origin, direction], t_max)?;
+            return Some((entry, Wide::of(&narrow)));
         }
-        let mask = _mm256_movemask_ps(_mm256_cmp_ps::<_CMP_LE_OQ>(near, far));
-        (mask as u32, store_8(near))
+        let (sign, least, margin) = (_mm_set1_ps(-0.0), _mm_set1_ps(LEAST), _mm_set1_ps(STEPS));
+        let (from, along) = (_mm256_cvtpd_ps(point), _mm256_cvtpd_ps(four(direction)));
+        let signs = _mm_and_ps(sign, along);
+        let size = _mm_max_ps(_mm_andnot_ps(sign, along), least);
+        let inverse = _mm_div_ps(_mm_set1_ps(1.0), _mm_or_ps(size, signs));
+        let toward = _mm_or_ps(margin, signs);
+        let negated = |x| _mm_xor_ps(x, sign);
+        let near = _mm_mul_ps(negated(_mm_add_ps(from, toward)), inverse);
+        let far = _mm_mul_ps(negated(_mm_sub_ps(from, toward)), inverse);
+        let rows = rows_of(_mm_movemask_ps(along) as u32);
+        let wide = Wide { inverse: spread(inverse), near: spread(near), far: spread(far), rows };
+        Some((Entry::at_start(tree), wide))
+    }
+
+    /// The first three numbers, each eight times.
+    #[target_feature(enable = "avx2,fma")]
+    #[inline]
+    fn spread(x: __m128) -> [__m256; 3] {
+        [
+            _mm256_broadcastss_ps(x),
+            _mm256_broadcastss_ps(_mm_movehdup_ps(x)),
+            _mm256_broadcastss_ps(_mm_movehl_ps(x, x)),
+        ]
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn from_afar(tree: &Tree, ray: [DVec3; 2], t_max: f64) -> Option<(Entry, Narrow)> {
+        Entry::entered(tree, ray.each_ref(), t_max)
+    }
+
+    impl Wide {
+        #[target_feature(enable = "avx2,fma")]
+        #[inline]
+        fn of(narrow: &Narrow) -> Wide {
+            let spread = |from: &[f32; 4]| [from[0], from[1], from[2]].map(|x| _mm256_set1_ps(x));
+            Wide {
+                inverse: spread(&narrow.inverse),
+                near: spread(&narrow.near),
+                far: spread(&narrow.far),
+                rows: narrow.rows,
+            }
+        }
+
+        /// [`super::meets`], eight children at once. The larger and the smaller of two give their second operand where one is NaN, as
+        /// the comparisons there do.
+        #[target_feature(enable = "avx2,fma")]
+        #[inline]
+        fn meets(&self, node: &Node, limit: f32) -> Met {
+            let (mut near, mut far) = (_mm256_setzero_ps(), _mm256_set1_ps(limit));
+            for a in 0..3 {
+                let [enter, leave] = self.rows[a].map(|first| load_8(node.row_from(first.into())));
+                near = _mm256_max_ps(_mm256_fmadd_ps(enter, self.inverse[a], self.near[a]), near);
+                far = _mm256_min_ps(_mm256_fmadd_ps(leave, self.inverse[a], self.far[a]), far);
+            }
+            let mask = _mm256_movemask_ps(_mm256_cmp_ps::<_CMP_LE_OQ>(near, far));
+            (mask as u32, store_8(near))
+        }
     }
 }
 
@@ -155,7 +291,10 @@ mod tests {
                 t_max
             };
             let mut to_plain = |range, t_max| noted(&mut by_plain, range, t_max);
-            super::super::walk(&tree, [&origin, &direction], 1e3, meets_fused, &mut to_plain);
+            if let Some((entry, narrow)) = Entry::entered(&tree, [&origin, &direction], 1e3) {
+                let meets = |node: &Node, limit| meets_fused(&narrow, node, limit);
+                super::super::walk(&tree, entry, 1e3, meets, &mut to_plain);
+            }
             walk(&tree, [&origin, &direction], 1e3, &mut |range, t_max| noted(&mut by_wide, range, t_max));
             n_offered += by_plain.len();
             assert_eq!(by_wide, by_plain, "ray {i}");

@@ -1,7 +1,9 @@
 //! A ray among triangles that stand in the order of a tree: what it has met so far, leaf by leaf.
 
+mod wide;
+
 use super::Sheared;
-use super::leaf::{Asked, Corners};
+use super::leaf::Corners;
 use crate::world::shape::{LocalRay, Meet};
 use crate::world::tree::Tree;
 use glam::DVec3;
@@ -22,23 +24,27 @@ impl Ordered<'_> {
     /// The nearest meeting at a distance in (0, limit], or any, and its position in the order of this tree; of equally near ones the first triangle.
     #[inline]
     pub fn nearest(self, tree: &Tree, ray: &LocalRay, limit: f64, any: bool) -> Option<(usize, Meet)> {
+        wide::nearest(self, tree, ray, limit, any)
+    }
+
+    /// The same one number at a time.
+    fn nearest_plain(self, tree: &Tree, ray: &LocalRay, limit: f64, any: bool) -> Option<(usize, Meet)> {
         let mut search = Search::new(self, ray, limit, any);
         if any {
             tree.traverse_any(&ray.origin, &ray.direction, limit, |range| search.goes_on(range));
         } else {
             tree.traverse(&ray.origin, &ray.direction, limit, |range, _| search.limit_after(range));
         }
-        search.found()
+        search.found.get()
     }
 }
 
-/// A search under way.
-pub struct Search<'m> {
-    among: Ordered<'m>,
-    ray: Sheared,
-    any: bool,
-    /// The position, [`NOWHERE`] so far, and where there. Apart and not an option, which would be written and read again as a whole.
+/// What was met so far. Apart and not an option, which would be written and read again as a whole.
+#[derive(Clone, Copy)]
+struct Found {
+    /// The position, [`NOWHERE`] so far.
     at: usize,
+    /// How far, or how far a meeting may be.
     limit: f64,
     a: f64,
     b: f64,
@@ -47,42 +53,66 @@ pub struct Search<'m> {
 /// No triangle stands there.
 const NOWHERE: usize = usize::MAX;
 
+impl Found {
+    #[inline(always)]
+    fn nothing(limit: f64) -> Found {
+        Found { at: NOWHERE, limit, a: 0.0, b: 0.0 }
+    }
+
+    #[inline(always)]
+    fn is_something(&self) -> bool {
+        self.at != NOWHERE
+    }
+
+    /// Takes what was met within the limit; of equally near ones the first in number.
+    #[inline(always)]
+    fn take(&mut self, at: usize, meet: Meet, order: &[u32]) {
+        if meet.t < self.limit || !self.is_something() || order[at] < order[self.at] {
+            *self = Found { at, limit: meet.t, a: meet.a, b: meet.b };
+        }
+    }
+
+    /// The position, and where there.
+    #[inline(always)]
+    fn get(&self) -> Option<(usize, Meet)> {
+        let Found { at, limit, a, b } = *self;
+        self.is_something().then_some((at, Meet { t: limit, a, b, face: 0, part: 0 }))
+    }
+}
+
+/// A search under way, one number at a time.
+pub struct Search<'m> {
+    among: Ordered<'m>,
+    ray: Sheared,
+    any: bool,
+    found: Found,
+}
+
 impl<'m> Search<'m> {
     /// For the nearest meeting at a distance in (0, limit], or any; of equally near ones the first triangle.
-    #[inline]
     pub fn new(among: Ordered<'m>, ray: &LocalRay, limit: f64, any: bool) -> Search<'m> {
-        Search { among, ray: Sheared::new(ray), any, at: NOWHERE, limit, a: 0.0, b: 0.0 }
+        Search { among, ray: Sheared::new(ray), any, found: Found::nothing(limit) }
     }
 
     /// Looks at a range of positions, as a traversal in order asks: gives the distance beyond which nothing matters, negative where nothing does.
     #[inline(always)]
     pub fn limit_after(&mut self, range: Range<usize>) -> f64 {
-        self.look(range);
-        if self.any && self.at != NOWHERE { -1.0 } else { self.limit }
+        if self.goes_on(range) { self.found.limit } else { -1.0 }
     }
 
     /// The same as a traversal without order asks: whether to go on.
     #[inline(always)]
     pub fn goes_on(&mut self, range: Range<usize>) -> bool {
-        self.look(range);
-        self.at == NOWHERE
-    }
-
-    #[inline(always)]
-    fn look(&mut self, range: Range<usize>) {
         let Ordered { corners, vertices, order } = self.among;
-        let asked = Asked { ray: &self.ray, limit: self.limit, any: self.any };
-        if let Some((at, meet)) = corners.nearest(vertices, range, &asked, |i| order[i])
-            && (self.at == NOWHERE || meet.t < self.limit || order[at] < order[self.at])
-        {
-            (self.at, self.limit, self.a, self.b) = (at, meet.t, meet.a, meet.b);
+        for position in range {
+            let triangle = corners.at(vertices, position);
+            if let Some(meet) = self.ray.meet(triangle.each_ref(), self.found.limit) {
+                self.found.take(position, meet, order);
+                if self.any {
+                    return false;
+                }
+            }
         }
-    }
-
-    /// The position that was met, and where there.
-    #[inline]
-    fn found(&self) -> Option<(usize, Meet)> {
-        (self.at != NOWHERE)
-            .then_some((self.at, Meet { t: self.limit, a: self.a, b: self.b, face: 0, part: 0 }))
+        true
     }
 }

@@ -4,7 +4,7 @@ use super::super::split::MAX_LEAF;
 use super::super::{put, subtree::append};
 use super::{Binary, Inner};
 use crate::world::bvh::build::boxes::Box32;
-use crate::world::bvh::{NODE_COST_OF_TRIANGLES, Node, WIDTH};
+use crate::world::bvh::{Node, Pricing, WIDTH};
 use rayon::prelude::*;
 use smallvec::SmallVec;
 
@@ -50,7 +50,7 @@ impl Costs {
             }
         }
         let (as_leaf, (below, own)) = (leaf_cost(area, n_items), shared[most - 1]);
-        let as_node = area * (LANE_COST + NODE_COST_OF_TRIANGLES) + below;
+        let as_node = area * (LANE_COST + Pricing::OF_TRIANGLES.node) + below;
         let mut least = as_leaf.min(as_node);
         let mut ways = own << Ways::OF_NODE | u32::from(as_leaf <= as_node) << Ways::IS_LEAF;
         let mut costs = [least; WIDTH];

@@ -17,7 +17,7 @@ mod rounds;
 use super::boxes::{Box32, Boxed, Item};
 use super::{finish, prepare};
 use crate::math::Aabb;
-use crate::world::bvh::Tree;
+use crate::world::bvh::{Pricing, Tree};
 use cut::Ways;
 
 /// The binary tree: items are numbered by their place in the row, nodes after them in the order in which they were made, so that halves
@@ -53,7 +53,7 @@ impl Tree {
             let bounds = ready.items.iter().map(Item::bare).collect();
             cut::cut(&rounds::join(bounds), &mut order, &mut nodes);
         }
-        finish(ready, nodes, order)
+        finish(ready, nodes, order, Pricing::OF_TRIANGLES.at_once)
     }
 }
 
@@ -73,6 +73,7 @@ mod tests {
         let tree = Tree::build_bottom_up(boxes.len(), |i| boxes[i]);
         let mut order = tree.order().to_vec();
         order.sort_unstable();
+        order.dedup();
         assert!(order.iter().copied().eq(0..boxes.len() as u32), "every item has one place");
         tree
     }

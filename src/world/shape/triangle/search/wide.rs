@@ -1,0 +1,305 @@
+//! The search with four triangles, or the three corners of one, in the lanes of an instruction, where the processor has such: the same operations in the
+//! same order as [`Sheared::meet`], so that every bit is the same, and compiled as one with the traversal around it. One of the rooms with
+//! unsafe code: there is no other way to such instructions.
+
+use super::Ordered;
+use crate::world::shape::{LocalRay, Meet};
+use crate::world::tree::Tree;
+
+/// See [`Ordered::nearest`].
+#[inline(always)]
+pub(super) fn nearest(
+    among: Ordered,
+    tree: &Tree,
+    ray: &LocalRay,
+    limit: f64,
+    any: bool,
+) -> Option<(usize, Meet)> {
+    #[cfg(target_arch = "x86_64")]
+    if crate::math::vectors::has_avx2_and_fma()
+        && let Tree::Bvh(tree) = tree
+        && tree.is_whole()
+    {
+        // SAFETY: the processor has just been found to have what the function is compiled for.
+        #[allow(unsafe_code, reason = "code for instructions that not every processor has")]
+        return unsafe {
+            let LocalRay { origin: o, direction: d } = ray;
+            x86::nearest(&among, tree, o.x, o.y, o.z, d.x, d.y, d.z, limit, any)
+        };
+    }
+    among.nearest_plain(tree, ray, limit, any)
+}
+
+#[cfg(target_arch = "x86_64")]
+mod x86 {
+    use super::super::Found;
+    use super::*;
+    use crate::math::vectors::lanes::{load_3, store_4, widen_4};
+    use crate::world::bvh;
+    use crate::world::shape::triangle::Sheared;
+    use crate::world::shape::triangle::leaf::{AT_ONCE, Corners, Four};
+    use glam::DVec3;
+    use std::arch::x86_64::*;
+    use std::ops::Range;
+
+    /// Rows of corners a, b, c: x and y before the shear, and z, relative to the ray. The last lane means nothing.
+    type Rows = [__m256d; 3];
+
+    /// The ray number by number, so that it comes in registers: what has just been written so cannot be read as a whole before the cache has it.
+    #[target_feature(enable = "avx2,fma")]
+    #[allow(clippy::too_many_arguments, reason = "numbers that come in registers")]
+    pub(super) fn nearest(
+        among: &Ordered,
+        tree: &bvh::Tree,
+        x: f64,
+        y: f64,
+        z: f64,
+        along_x: f64,
+        along_y: f64,
+        along_z: f64,
+        limit: f64,
+        any: bool,
+    ) -> Option<(usize, Meet)> {
+        let (origin, direction) = (DVec3::new(x, y, z), DVec3::new(along_x, along_y, along_z));
+        let ray = &LocalRay { origin, direction };
+        match (among.corners, any) {
+            (Corners::Narrow(all), false) => nearest_narrow::<false>(among, all, tree, ray, limit),
+            (Corners::Narrow(all), true) => nearest_narrow::<true>(among, all, tree, ray, limit),
+            (Corners::Shared(all), false) => nearest_shared::<false>(among, all, tree, ray, limit),
+            (Corners::Shared(all), true) => nearest_shared::<true>(among, all, tree, ray, limit),
+        }
+    }
+
+    #[target_feature(enable = "avx2,fma")]
+    fn nearest_narrow<const ANY: bool>(
+        among: &Ordered,
+        all: &[Four],
+        tree: &bvh::Tree,
+        ray: &LocalRay,
+        limit: f64,
+    ) -> Option<(usize, Meet)> {
+        let sheared = Sheared::new(ray);
+        let start = sheared.start.map(|x| _mm256_set1_pd(x));
+        let shear = [sheared.shear[0], sheared.shear[1]].map(|x| _mm256_set1_pd(x));
+        // Below 3, as they are anyway.
+        let [axis_x, axis_y, axis_z] = sheared.axes.map(|axis| axis.min(2));
+        let mut found = Found::nothing(limit);
+        // Each four that a range touches, whatever else is in it.
+        let look = |found: &mut Found, range: Range<usize>| {
+            for at in range.start / AT_ONCE..range.end.div_ceil(AT_ONCE) {
+                let four = &all[at];
+                let row = |axis: usize, i: usize, corner: usize| {
+                    _mm256_sub_pd(widen_4(&four.0[axis][corner]), start[i])
+                };
+                let z = [row(axis_z, 2, 0), row(axis_z, 2, 1), row(axis_z, 2, 2)];
+                let sheared_row = |axis: usize, i: usize, corner: usize| {
+                    _mm256_sub_pd(row(axis, i, corner), _mm256_mul_pd(shear[i], z[corner]))
+                };
+                let x = [sheared_row(axis_x, 0, 0), sheared_row(axis_x, 0, 1), sheared_row(axis_x, 0, 2)];
+                let y = [sheared_row(axis_y, 1, 0), sheared_row(axis_y, 1, 1), sheared_row(axis_y, 1, 2)];
+                let side =
+                    |p: usize, q: usize| _mm256_sub_pd(_mm256_mul_pd(x[p], y[q]), _mm256_mul_pd(y[p], x[q]));
+                let (u, v, w) = (side(2, 1), side(0, 2), side(1, 0));
+                // Outside where one side is below 0 and another above; where one is 0, exact numbers tell.
+                let least = _mm256_min_pd(_mm256_min_pd(u, v), w);
+                let most = _mm256_max_pd(_mm256_max_pd(u, v), w);
+                let zero = _mm256_setzero_pd();
+                let mut within = _mm256_movemask_pd(_mm256_or_pd(
+                    _mm256_cmp_pd::<_CMP_GE_OQ>(least, zero),
+                    _mm256_cmp_pd::<_CMP_LE_OQ>(most, zero),
+                ));
+                if within == 0 {
+                    continue;
+                }
+                let [u, v, w] = [u, v, w].map(|x| store_4(x));
+                let [a, b, c] = z.map(|x| store_4(x));
+                while within != 0 {
+                    let lane = within.trailing_zeros() as usize & 3;
+                    within &= within - 1;
+                    let position = AT_ONCE * at + lane;
+                    if !range.contains(&position) {
+                        continue;
+                    }
+                    let sides = [u[lane], v[lane], w[lane]];
+                    let meet = if sides.contains(&0.0) {
+                        meet_on_edge(*ray, four.triangle(lane), found.limit)
+                    } else {
+                        sheared.meet_inside(sides, [a[lane], b[lane], c[lane]], found.limit, || {
+                            four.triangle(lane)
+                        })
+                    };
+                    if let Some(meet) = meet {
+                        found.take(position, meet, among.order);
+                        if ANY {
+                            return false;
+                        }
+                    }
+                }
+            }
+            true
+        };
+        if ANY {
+            tree.traverse_any_avx2(ray.origin, ray.direction, limit, |range| look(&mut found, range));
+        } else {
+            tree.traverse_avx2(ray.origin, ray.direction, limit, |range, _| {
+                look(&mut found, range);
+                found.limit
+            });
+        }
+        found.get()
+    }
+
+    #[target_feature(enable = "avx2,fma")]
+    fn nearest_shared<const ANY: bool>(
+        among: &Ordered,
+        all: &[[u32; 3]],
+        tree: &bvh::Tree,
+        ray: &LocalRay,
+        limit: f64,
+    ) -> Option<(usize, Meet)> {
+        let sheared = Sheared::new(ray);
+        let [x, y, z] = sheared.axes.map(|axis| 2 * axis as i32);
+        let order = _mm256_setr_epi32(x, x + 1, y, y + 1, z, z + 1, 6, 7);
+        let turned = |v: &DVec3| {
+            let v = _mm256_castpd_ps(load_3(v.as_ref()));
+            _mm256_castps_pd(_mm256_permutevar8x32_ps(v, order))
+        };
+        let [start_x, start_y, start_z] = sheared.start;
+        let origin = _mm256_setr_pd(start_x, start_y, start_z, 0.0);
+        let test = |position: usize, limit: f64| {
+            let places = all[position].map(|i| &among.vertices[i as usize]);
+            let at = |i: usize| _mm256_sub_pd(turned(places[i]), origin);
+            meet(ray, &sheared, transposed(at(0), at(1), at(2)), limit, || places.map(|p| *p))
+        };
+        search::<ANY>(among, tree, ray, limit, test)
+    }
+
+    /// The search by a test of the triangle at a position.
+    #[target_feature(enable = "avx2,fma")]
+    #[inline]
+    fn search<const ANY: bool>(
+        among: &Ordered,
+        tree: &bvh::Tree,
+        ray: &LocalRay,
+        limit: f64,
+        test: impl Fn(usize, f64) -> Option<Meet>,
+    ) -> Option<(usize, Meet)> {
+        let mut found = Found::nothing(limit);
+        if ANY {
+            tree.traverse_any_avx2(ray.origin, ray.direction, limit, |range| {
+                for position in range {
+                    if let Some(meet) = test(position, limit) {
+                        found.take(position, meet, among.order);
+                        return false;
+                    }
+                }
+                true
+            });
+        } else {
+            tree.traverse_avx2(ray.origin, ray.direction, limit, |range, _| {
+                for position in range {
+                    if let Some(meet) = test(position, found.limit) {
+                        found.take(position, meet, among.order);
+                    }
+                }
+                found.limit
+            });
+        }
+        found.get()
+    }
+
+    /// Rows of the columns a, b, c.
+    #[target_feature(enable = "avx2,fma")]
+    #[inline]
+    fn transposed(a: __m256d, b: __m256d, c: __m256d) -> Rows {
+        let (xz, y) = (_mm256_unpacklo_pd(a, b), _mm256_unpackhi_pd(a, b));
+        let c_y = _mm256_castpd256_pd128(_mm256_permute_pd::<5>(c));
+        [
+            _mm256_insertf128_pd::<1>(xz, _mm256_castpd256_pd128(c)),
+            _mm256_insertf128_pd::<1>(y, c_y),
+            _mm256_permute2f128_pd::<0x31>(xz, c),
+        ]
+    }
+
+    #[target_feature(enable = "avx2,fma")]
+    #[inline]
+    fn meet(
+        ray: &LocalRay,
+        sheared: &Sheared,
+        [x, y, z]: Rows,
+        limit: f64,
+        corners: impl Fn() -> [DVec3; 3],
+    ) -> Option<Meet> {
+        let x = _mm256_sub_pd(x, _mm256_mul_pd(_mm256_set1_pd(sheared.shear[0]), z));
+        let y = _mm256_sub_pd(y, _mm256_mul_pd(_mm256_set1_pd(sheared.shear[1]), z));
+        // u, v, w of c a b and b c a.
+        const CAB: i32 = 0b11_01_00_10;
+        const BCA: i32 = 0b11_00_10_01;
+        let one = _mm256_mul_pd(_mm256_permute4x64_pd::<CAB>(x), _mm256_permute4x64_pd::<BCA>(y));
+        let other = _mm256_mul_pd(_mm256_permute4x64_pd::<CAB>(y), _mm256_permute4x64_pd::<BCA>(x));
+        let sides = _mm256_sub_pd(one, other);
+        let on_edge = _mm256_cmp_pd::<_CMP_EQ_OQ>(sides, _mm256_setzero_pd());
+        if _mm256_movemask_pd(on_edge) & 7 != 0 {
+            return meet_on_edge(*ray, corners(), limit);
+        }
+        // All or none: 7 and 0, which follow each other.
+        if (_mm256_movemask_pd(sides) + 1) & 7 > 1 {
+            return None;
+        }
+        let ([u, v, w, _], [a, b, c, _]) = (store_4(sides), store_4(z));
+        sheared.meet_inside([u, v, w], [a, b, c], limit, corners)
+    }
+
+    #[cold]
+    fn meet_on_edge(ray: LocalRay, corners: [DVec3; 3], limit: f64) -> Option<Meet> {
+        Sheared::new(&ray).meet(corners.each_ref(), limit)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::random::Random;
+    use crate::scene::Accelerator;
+    use crate::world::shape::triangle::leaf::Corners;
+    use crate::world::shape::triangle::{bounds_of, cut};
+    use glam::DVec3;
+
+    #[test]
+    fn lanes_find_the_same_bits_as_plain_operations() {
+        let mut random = Random::new(11);
+        // On a coarse grid, so that rays go through corners and edges and along planes; and anywhere.
+        let mut point =
+            |steps: f64| DVec3::from_array(std::array::from_fn(|_| (random.unit() * steps).floor() / 4.0));
+        let mut n_met = 0;
+        for round in 0..4000 {
+            let steps = if round % 2 == 0 { 8.0 } else { 1e9 };
+            let odd = if round % 4 < 2 { DVec3::ZERO } else { DVec3::splat(1.0 / 3.0) };
+            let vertices: Vec<DVec3> = (0..12).map(|_| point(steps) + odd).collect();
+            let of = |i: usize| [vertices[i], vertices[i + 1], vertices[i + 2]];
+            let tree = Tree::build_of_triangles(
+                Accelerator::Bvh,
+                10,
+                |i| bounds_of(of(i)),
+                |i, cell| cut::cut(of(i), cell),
+            );
+            let order = tree.order();
+            let corners = Corners::new(&vertices, order.iter().map(|&i| [i, i + 1, i + 2]));
+            assert_eq!(matches!(corners, Corners::Narrow(_)), round % 4 == 0, "round {round}");
+            let (from, to) = (point(steps) + odd, vertices[round % 12]);
+            let inside = (to + vertices[(round + 1) % 12] + vertices[(round + 2) % 12]) / 3.0;
+            let Some((ray, _)) = LocalRay::new(from, if round % 3 == 0 { to } else { inside } - from) else {
+                continue;
+            };
+            let among = Ordered { corners: &corners, vertices: &vertices, order };
+            for any in [false, true] {
+                let bits =
+                    |of: Option<(usize, Meet)>| of.map(|(i, m)| (i, [m.t, m.a, m.b].map(f64::to_bits)));
+                let plain = bits(among.nearest_plain(&tree, &ray, f64::MAX, any));
+                assert_eq!(bits(among.nearest(&tree, &ray, f64::MAX, any)), plain, "round {round}");
+                n_met += usize::from(plain.is_some());
+            }
+        }
+        assert!(n_met > 3000, "{n_met}");
+    }
+}
