@@ -4,7 +4,7 @@ use super::WIDTH;
 use super::boxes::Boxed;
 use super::split::{Bins, MAX_LEAF, Part, Price};
 
-/// What visiting a child pricing, in item tests.
+/// What visiting a child costs, in item tests.
 const LANE_COST: Price = Price::Lane(1.0);
 
 /// What a node is made of: a part, or the halves of one that was found worth a node by splitting it.
@@ -60,7 +60,7 @@ impl Children {
         &self.parts[..self.n]
     }
 
-    /// What the node over a child's run is made of; none where a leaf pricing less. A small part is split to find out, and its halves are kept.
+    /// What the node over a child's run is made of; none where a leaf costs less. A small part is split to find out, and its halves are kept.
     pub fn below<T: Boxed>(&self, i: usize, run: &mut [T], bins: &mut Bins) -> Option<Start> {
         let part = self.parts[i];
         if self.area[i] == CLOSED {

@@ -18,7 +18,7 @@ fn bins_for(count: usize) -> usize {
     }
 }
 
-/// What is in the bins of all three axes; kept between splits, as making it pricing as much as a small split.
+/// What is in the bins of all three axes; kept between splits, as making it costs as much as a small split.
 pub(super) struct Bins {
     bounds: [[Box32; 3]; MOST],
     /// How many items, a lane for each axis.
@@ -212,7 +212,7 @@ pub(super) struct Part {
     depth: u32,
 }
 
-/// What splitting a part pricing, in tests of items that come with it or go.
+/// What splitting a part costs, in tests of items that come with it or go.
 #[derive(Clone, Copy)]
 pub(super) enum Price {
     /// A node of its own, tested by every ray that meets the part.
