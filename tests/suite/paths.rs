@@ -3,9 +3,12 @@
 use crate::stage::*;
 use glam::DVec3;
 use ogee::render::features::{Layer, Layers as Kept};
+use ogee::render::sampler::Sampler;
 use ogee::render::settings::{Crop, ResolvedSettings};
 use ogee::scene::*;
-use ogee::world::World;
+use ogee::world::bsdf::Bsdf;
+use ogee::world::light::Lights;
+use ogee::world::{Ray, RayKind, World};
 use std::f64::consts::PI;
 use std::sync::Arc;
 
@@ -222,6 +225,65 @@ fn direct_light_is_what_asking_every_light_gives() {
     agrees(lit(vec![floor(), area(rect(Y, 0.5 * X, 0.5 * Z), 1.0, 1)]), 0.239456);
     agrees(lit(vec![floor(), area(sphere(2.0 * Y, 1.0), 1.0, 1)]), 0.25);
     agrees(lit(vec![floor(), object(sphere(2.0 * Y, 1.0), &glowing(1.0)), sky(0.5)]), 0.25 + 0.5 * 0.75);
+}
+
+/// Mean and variance of some numbers.
+fn spread(values: &[f64]) -> (f64, f64) {
+    let n = values.len() as f64;
+    let mean = values.iter().sum::<f64>() / n;
+    (mean, values.iter().map(|x| (x - mean) * (x - mean)).sum::<f64>() / (n - 1.0))
+}
+
+/// Plates and lamps of all sizes, as in Veach & Guibas (1995): where one of the two ways is noisy the other is not.
+#[test]
+fn asking_meeting_and_both_find_the_same_light_and_both_is_never_noisy() {
+    let n = 1 << 14;
+    for (roughness, radius) in
+        [0.05, 0.2, 0.7].into_iter().flat_map(|roughness| [0.03, 0.3, 1.2].map(|radius| (roughness, radius)))
+    {
+        let plate =
+            layered(0.0, |l| (l.metal, l.roughness) = (Texture::number(0.9), Texture::number(roughness)));
+        let lamp = object(sphere(DVec3::new(0.0, 2.0, -2.0), radius), &glowing(1.0));
+        let world = world(vec![object(rect(DVec3::ZERO, 4.0 * X, -4.0 * Z), &plate), lamp]);
+        let lights = Lights::new(&world);
+        let light = &lights.lights[0];
+        let (origin, t_max, kind) = (DVec3::new(0.0, 2.0, 2.2), f64::INFINITY, RayKind::Camera);
+        let ray = Ray { origin, direction: -origin.normalize(), t_max, kind };
+        let hit = world.closest(&ray).expect("the plate");
+        let bsdf = Bsdf::at(&world, &hit, &ray).expect("no function");
+        let (odds, at, normal) = (bsdf.odds(), hit.point, bsdf.normal);
+        let share = |this: f64, other: f64| this / (this + other);
+        let (mut asked, mut met, mut both) = (Vec::new(), Vec::new(), Vec::new());
+        for i in 0..n {
+            let mut sampler = Sampler::new(7, 0, 0, i).of_kind(SamplerKind::Independent, n);
+            let (place, which, way) = (sampler.next_2d(), sampler.next_1d(), sampler.next_2d());
+            let of_lamp = light.sample(at, normal, place);
+            let (one, by_one) = of_lamp.map_or((0.0, 0.0), |sample| {
+                let found = (bsdf.sent(sample.wi) * sample.weight).x;
+                let density = sample.pdf.expect("it has an extent");
+                (found, found * share(density, bsdf.density(odds, sample.wi)))
+            });
+            let shining = bsdf.bounce(odds, which, way).and_then(|bounce| {
+                let found = world.closest(&hit.spawn(bounce.direction, RayKind::Indirect))?;
+                lights.of(&world, found.primitive)?;
+                let by_lamp = light.density(at, normal, bounce.direction, Some(&found.surface_point()));
+                Some((bounce.weight.x, share(bounce.density?, by_lamp?)))
+            });
+            let (other, part) = shining.unwrap_or((0.0, 0.0));
+            asked.push(one);
+            met.push(other);
+            both.push(by_one + other * part);
+        }
+        let [asked, met, both] = [asked, met, both].map(|values| spread(&values));
+        let case = format!("roughness {roughness}, radius {radius}: {asked:?} {met:?} {both:?}");
+        for (mean, variance) in [asked, met] {
+            let error = ((variance + both.1) / f64::from(n)).sqrt();
+            assert!((mean - both.0).abs() < 4.0 * error, "{case}");
+        }
+        // Theory allows half of the light squared beside what the better way has.
+        let most = asked.1.min(met.1) + 0.15 * both.0 * both.0;
+        assert!(both.0 > 0.0 && both.1 < most, "{case}");
+    }
 }
 
 #[test]
