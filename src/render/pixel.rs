@@ -51,9 +51,6 @@ impl Pixel {
         report: &mut Report,
         cancel: &AtomicBool,
     ) -> bool {
-        if self.enough {
-            return true;
-        }
         let mut sampler = self.sampler(picture, report);
         while self.taken < to && !self.enough {
             if cancel.load(Ordering::Relaxed) {

@@ -52,8 +52,9 @@ fn put(node: &mut Node, slot: usize, bounds: &Box32) {
 /// The tree of nodes over items in their order; those without a finite box follow it.
 fn finish(ready: Prepared, mut nodes: Vec<Node>, order: Vec<u32>, at_once: usize) -> Tree {
     nodes.shrink_to_fit();
-    let mut order = if at_once > 1 { aligned(&mut nodes, &order, at_once) } else { order };
-    let bounded = if nodes.is_empty() { 0 } else { order.len() };
+    let has_leaves = !nodes.is_empty();
+    let mut order = if has_leaves && at_once > 1 { aligned(&mut nodes, &order, at_once) } else { order };
+    let bounded = if has_leaves { order.len() } else { 0 };
     let unbounded = !ready.unbounded.is_empty();
     order.extend(ready.unbounded);
     Tree { frame: ready.frame, bounds: ready.bounds, unbounded, nodes, order, bounded }
@@ -63,7 +64,7 @@ fn finish(ready: Prepared, mut nodes: Vec<Node>, order: Vec<u32>, at_once: usize
 fn aligned(nodes: &mut [Node], order: &[u32], at_once: usize) -> Vec<u32> {
     // A leaf has some places to spare.
     let mut all = Vec::with_capacity(order.len() + order.len() / 3);
-    for node in &mut *nodes {
+    for node in nodes {
         for slot in 0..WIDTH {
             let (first, count) = (node.child(slot) as usize, node.count(slot));
             if count > 0 {
@@ -73,8 +74,7 @@ fn aligned(nodes: &mut [Node], order: &[u32], at_once: usize) -> Vec<u32> {
             }
         }
     }
-    // Where there is no node there are no leaves.
-    if nodes.is_empty() { order.to_vec() } else { all }
+    all
 }
 
 pub(super) fn build(count: usize, bounds_of: impl Fn(usize) -> Aabb + Sync, pricing: Pricing) -> Tree {
