@@ -11,17 +11,19 @@ static FOUND: AtomicU8 = AtomicU8::new(UNKNOWN);
 
 const UNKNOWN: u8 = 1;
 const AVX2: u8 = 2;
-const FMA: u8 = 4;
+/// AVX2, fused products and the instructions for bits.
+const V3: u8 = 4;
 
 /// From now on as if the processor had nothing beyond what all of its kind have.
 pub fn keep_to_baseline() {
     FOUND.store(0, Ordering::Relaxed);
 }
 
-/// Whether AVX2 and fused products are there and may be used. Fused products round once: for what no result shows, such as tests of boxes.
+/// Whether AVX2, FMA, BMI1 and BMI2 are there and may be used: x86-64-v3. Fused products round once: for what no result shows, such as tests of
+/// boxes.
 #[inline(always)]
-pub fn has_avx2_and_fma() -> bool {
-    found() & (AVX2 | FMA) == AVX2 | FMA
+pub fn has_v3() -> bool {
+    found() & V3 != 0
 }
 
 /// Whether AVX2 is there and may be used.
@@ -43,9 +45,10 @@ fn found() -> u8 {
 fn find() -> u8 {
     #[cfg(target_arch = "x86_64")]
     let there = {
-        let (avx2, fma) =
-            (std::arch::is_x86_feature_detected!("avx2"), std::arch::is_x86_feature_detected!("fma"));
-        (u8::from(avx2) * AVX2) | (u8::from(fma) * FMA)
+        use std::arch::is_x86_feature_detected as has;
+        let avx2 = has!("avx2");
+        let v3 = avx2 && has!("fma") && has!("bmi1") && has!("bmi2");
+        (u8::from(avx2) * AVX2) | (u8::from(v3) * V3)
     };
     #[cfg(not(target_arch = "x86_64"))]
     let there = 0;

@@ -24,6 +24,21 @@ impl<'s, T: Copy, const N: usize> Stack<'s, T, N> {
         }
     }
 
+    /// Pushes an entry so that those from `bottom` on stay in order, the largest first. Where some have spilled, no order is kept.
+    #[inline(always)]
+    pub fn push_above(&mut self, bottom: usize, entry: T)
+    where
+        T: PartialOrd,
+    {
+        let mut at = self.len;
+        self.push(entry);
+        while at > bottom && at < N && self.entries[at - 1] < entry {
+            self.entries[at] = self.entries[at - 1];
+            at -= 1;
+            self.entries[at] = entry;
+        }
+    }
+
     /// The last entry; those that spilled come last of all.
     #[inline(always)]
     pub fn pop(&mut self) -> Option<T> {
@@ -49,12 +64,6 @@ impl<'s, T: Copy, const N: usize> Stack<'s, T, N> {
     #[inline(always)]
     pub fn len(&self) -> usize {
         self.len
-    }
-
-    /// Those held in place from one on.
-    #[inline(always)]
-    pub fn above(&mut self, bottom: usize) -> &mut [T] {
-        &mut self.entries[bottom..self.len]
     }
 }
 
@@ -85,6 +94,9 @@ mod tests {
         }
         (0..7).for_each(|i| stack.push(i));
         assert_eq!(stack.next(|i| *i < 2), Some(1));
-        assert_eq!((stack.len(), stack.above(0)), (1, &mut [0][..]));
+        assert_eq!(stack.len(), 1);
+        [5, 9, 7].into_iter().for_each(|i| stack.push_above(1, i));
+        let all: Vec<u32> = std::iter::from_fn(|| stack.pop()).collect();
+        assert_eq!(all, [5, 9, 0, 7, 6, 5, 4, 3], "there was no room for 7");
     }
 }

@@ -10,11 +10,11 @@ fn area(lower: [f32; 3], upper: [f32; 3]) -> f64 {
 
 impl Node {
     fn corner(&self, row: usize, slot: usize) -> [f32; 3] {
-        std::array::from_fn(|a| self.rows[row + a][slot])
+        std::array::from_fn(|a| self.planes[row + a][slot])
     }
 
     fn slots(&self) -> impl Iterator<Item = usize> {
-        (0..WIDTH).filter(|slot| self.rows[0][*slot] <= self.rows[3][*slot])
+        (0..WIDTH).filter(|slot| self.planes[0][*slot] <= self.planes[3][*slot])
     }
 
     /// Half the area of the box around all children.
@@ -34,7 +34,8 @@ impl Tree {
             return [0.0; 2];
         };
         let tests = |node: &Node| {
-            let leaf = |slot| area(node.corner(0, slot), node.corner(3, slot)) * f64::from(node.count(slot));
+            let leaf =
+                |slot| area(node.corner(0, slot), node.corner(3, slot)) * node.children[slot].count() as f64;
             node.slots().map(leaf).sum::<f64>()
         };
         [

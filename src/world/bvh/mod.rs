@@ -14,10 +14,12 @@ mod tests;
 mod traverse;
 
 pub use traverse::clip;
+pub(in crate::world) use traverse::{Stored, fetch_entry};
 
 use crate::math::Aabb;
 use frame::Frame;
 use glam::Vec4;
+use std::ops::Range;
 
 /// Children of a node.
 const WIDTH: usize = 8;
@@ -54,48 +56,83 @@ impl Pricing {
     }
 }
 
-/// Up to eight children, as arrays over the children so that one instruction tests all of them. Four cache lines.
+/// Up to eight children, as arrays over the children so that one instruction tests all of them.
 #[derive(Clone, Copy, Debug)]
 #[repr(align(64))]
 struct Node {
-    /// Lower x, y, z and upper x, y, z of each child, in the tree's frame; an absent child is empty (+∞ … −∞). Then the bits of the
-    /// child's node or first item, and of how many items a leaf has, 0 for a node. Eight rows, so that three bits name one.
-    rows: [[f32; WIDTH]; 8],
+    /// Lower x, y, z and upper x, y, z of each child, in the tree's frame; an absent child is empty (+∞ … −∞).
+    planes: [[f32; WIDTH]; 6],
+    children: [Child; WIDTH],
 }
 
 impl Node {
-    const CHILD: usize = 6;
-    const COUNT: usize = 7;
-
     /// Without children.
     const EMPTY: Node = {
         const BEYOND: [f32; WIDTH] = [f32::INFINITY; WIDTH];
         const BEFORE: [f32; WIDTH] = [f32::NEG_INFINITY; WIDTH];
-        const NONE: [f32; WIDTH] = [0.0; WIDTH];
-        Node { rows: [BEYOND, BEYOND, BEYOND, BEFORE, BEFORE, BEFORE, NONE, NONE] }
+        Node { planes: [BEYOND, BEYOND, BEYOND, BEFORE, BEFORE, BEFORE], children: [Child::NONE; WIDTH] }
     };
 
-    /// The child's node, or its first item.
-    fn child(&self, slot: usize) -> u32 {
-        self.rows[Node::CHILD][slot].to_bits()
+    /// Eight planes.
+    #[inline(always)]
+    fn row(&self, row: Row) -> &[f32; WIDTH] {
+        // Within the node, as is known of every `Row`.
+        self.planes.as_flattened()[row as usize..].first_chunk().expect("six rows of eight")
+    }
+}
+
+/// A row of planes, by how many numbers stand before it.
+#[derive(Clone, Copy, Debug)]
+#[repr(u8)]
+enum Row {
+    LowerX = 0,
+    LowerY = 8,
+    LowerZ = 16,
+    UpperX = 24,
+    UpperY = 32,
+    UpperZ = 40,
+}
+
+/// A child of a node: another, or a leaf with its first item and how many it has. One number, so that it waits beside its distance.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Child(u32);
+
+impl Child {
+    /// Bits of how many items a leaf has; 0 for a node.
+    const COUNT_BITS: u32 = 4;
+    /// The most items of a leaf.
+    const MOST_OF_LEAF: usize = (1 << Child::COUNT_BITS) - 1;
+    /// The most places in the order of items; there are fewer nodes.
+    const MOST: usize = 1 << (u32::BITS - Child::COUNT_BITS);
+
+    /// Node 0 is nobody's child: where it stands there is none.
+    const NONE: Child = Child(0);
+
+    fn node(index: usize) -> Child {
+        Child((index as u32) << Child::COUNT_BITS)
+    }
+
+    fn leaf(first: usize, count: usize) -> Child {
+        debug_assert!((1..=Child::MOST_OF_LEAF).contains(&count), "{count} items of a leaf");
+        Child((first as u32) << Child::COUNT_BITS | count as u32)
+    }
+
+    /// The node, or where the first item stands.
+    #[inline(always)]
+    fn place(self) -> usize {
+        (self.0 >> Child::COUNT_BITS) as usize
     }
 
     /// How many items a leaf has; 0 for a node.
-    fn count(&self, slot: usize) -> u32 {
-        self.rows[Node::COUNT][slot].to_bits()
-    }
-
-    /// Eight planes by where they begin, a multiple of eight.
     #[inline(always)]
-    fn row_from(&self, first: usize) -> &[f32; WIDTH] {
-        // Within the node, whatever the number.
-        let first = first & (7 * WIDTH);
-        self.rows.as_flattened()[first..].first_chunk().expect("eight rows of eight")
+    fn count(self) -> usize {
+        self.0 as usize & Child::MOST_OF_LEAF
     }
 
-    fn set_child(&mut self, slot: usize, child: u32, count: u32) {
-        self.rows[Node::CHILD][slot] = f32::from_bits(child);
-        self.rows[Node::COUNT][slot] = f32::from_bits(count);
+    /// Where the items of a leaf stand; none for a node.
+    #[inline(always)]
+    fn items(self) -> Option<Range<usize>> {
+        (self.count() > 0).then(|| self.place()..self.place() + self.count())
     }
 }
 

@@ -104,10 +104,10 @@ fn leaves_of_triangles_begin_at_multiples_of_what_is_tested_together() {
     ] {
         let mut named = Vec::new();
         for node in &tree.nodes {
-            for slot in (0..8).filter(|slot| node.count(*slot) > 0) {
-                let first = node.child(slot) as usize;
+            for items in node.children.iter().filter_map(|child| child.items()) {
+                let first = items.start;
                 assert_eq!(first % Pricing::OF_TRIANGLES.at_once, 0, "a leaf begins at {first}");
-                named.extend_from_slice(&tree.order()[first..first + node.count(slot) as usize]);
+                named.extend_from_slice(&tree.order()[items]);
             }
         }
         named.sort_unstable();

@@ -5,9 +5,12 @@
 
 mod counting;
 mod entry;
+mod fetch;
 mod wide;
 
-use super::{Node, Tree, WIDTH};
+pub(in crate::world) use fetch::{Stored, fetch_entry};
+
+use super::{Child, Node, Tree, WIDTH};
 use crate::math::Aabb;
 use crate::math::error::gamma;
 use crate::world::stack::Stack;
@@ -29,9 +32,6 @@ const MARGIN: f64 = gamma(16);
 
 /// A bound on coordinates in a tree's frame.
 const FRAME_SIZE: f64 = 2.0;
-
-/// Nodes that no cache near the processor holds: from then on those that wait are fetched ahead.
-const MANY: usize = 1 << 14;
 
 /// Entries of the stack that need no allocation; deeper ones spill.
 const STACK: usize = 32;
@@ -67,24 +67,17 @@ fn clip_by(bounds: &Aabb, origin: DVec3, inverse: DVec3, t_max: f64) -> Option<(
 /// Which children of a node a ray meets, as bits, and where it enters each.
 type Met = (u32, [f32; WIDTH]);
 
-/// The bits of a distance that name a slot.
-const SLOT: u32 = WIDTH as u32 - 1;
-
-/// A child by its node and slot.
-type Child = (u32, u32);
-
-/// A child that is still to be visited: where it is entered, of which the last three bits are its slot, and its node. Numbers that
-/// order children, near ones first.
+/// A child that is still to be visited, after where it is entered: numbers that order children, near ones first.
 type Pending = u64;
 
 #[inline(always)]
-fn pending(near: f32, (node, slot): Child) -> Pending {
-    u64::from(near.to_bits() & !SLOT | slot) << 32 | u64::from(node)
+fn pending(near: f32, child: Child) -> Pending {
+    u64::from(near.to_bits()) << 32 | u64::from(child.0)
 }
 
 #[inline(always)]
 fn child_of(entry: Pending) -> Child {
-    (entry as u32, (entry >> 32) as u32 & SLOT)
+    Child(entry as u32)
 }
 
 /// The children that are still to be visited.
@@ -94,51 +87,43 @@ type Waiting<'s> = Stack<'s, Pending, STACK>;
 #[inline(always)]
 fn last_within(limit: f32) -> Pending {
     // Of a negative one, all; before which nothing is met.
-    u64::from(limit.to_bits() | SLOT) << 32 | u64::from(u32::MAX)
+    u64::from(limit.to_bits()) << 32 | u64::from(u32::MAX)
 }
 
-/// Pushes the children that the ray meets but the nearest, farther ones first; gives the nearest.
+/// The first of some slots, which are bits.
 #[inline(always)]
-fn enter(nodes: &[Node], stack: &mut Waiting, node: u32, (mut mask, near): Met) -> Option<Child> {
-    if mask == 0 {
-        return None;
-    }
-    let mut take = || {
-        let slot = mask.trailing_zeros() & SLOT;
-        mask &= mask - 1;
-        (slot, mask == 0)
-    };
+fn take(slots: &mut u32) -> usize {
+    let slot = slots.trailing_zeros() as usize & (WIDTH - 1);
+    *slots &= *slots - 1;
+    slot
+}
+
+/// Pushes the children that the ray meets, of which there are some, but the nearest, farther ones first; gives the nearest.
+#[inline(always)]
+fn enter(node: &Node, fetch: impl Fn(Child), stack: &mut Waiting, (mut met, near): Met) -> Child {
     // Most often there is one, which is found before its distance is.
-    let (slot, is_last) = take();
-    if is_last {
-        return Some((node, slot));
+    let first = take(&mut met);
+    if met == 0 {
+        return node.children[first];
     }
-    let is_large = nodes.len() >= MANY;
-    let key = |slot: u32| {
-        if is_large {
-            wide::fetch(nodes, nodes[node as usize].child(slot as usize));
-        }
-        pending(near[slot as usize], (node, slot))
+    // All that are met are fetched, as which is the nearest is known only some time later.
+    let key = |slot: usize| {
+        let child = node.children[slot];
+        fetch(child);
+        pending(near[slot], child)
     };
-    let first = key(slot);
-    let (slot, mut is_last) = take();
-    let second = key(slot);
+    let first = key(first);
+    let second = key(take(&mut met));
     let mut nearest = first.min(second);
-    // And then two, of which one waits.
     let bottom = stack.len();
     stack.push(first.max(second));
-    if !is_last {
-        while !is_last {
-            let slot;
-            (slot, is_last) = take();
-            let next = key(slot);
-            stack.push(nearest.max(next));
-            nearest = nearest.min(next);
-        }
+    while met != 0 {
+        let next = key(take(&mut met));
         // Where some spilled, their order is lost, which costs time only.
-        sort_far_first(stack.above(bottom));
+        stack.push_above(bottom, nearest.max(next));
+        nearest = nearest.min(next);
     }
-    Some(child_of(nearest))
+    child_of(nearest)
 }
 
 impl Tree {
@@ -196,95 +181,78 @@ fn walk(
     entry: Entry,
     mut t_max: f64,
     meets: impl Fn(&Node, f32) -> Met,
+    stored: Stored,
     leaf: &mut impl FnMut(Range<usize>, f64) -> f64,
 ) {
     let nodes = &tree.nodes[..];
+    let fetch = |child: Child| stored.fetch(nodes, child);
     let mut limit = entry.limit(t_max);
     let mut last = last_within(limit);
     let (mut held, mut spilled) = ([0; STACK], Vec::new());
     let mut stack = Waiting::new(&mut held, &mut spilled);
-    let mut at = 0;
+    let mut node = &nodes[0];
     loop {
-        let met = meets(&nodes[at as usize], limit);
-        let mut waiting = enter(nodes, &mut stack, at, met);
-        if waiting.is_none() {
-            waiting = stack.next(|entry| *entry <= last).map(child_of);
-        }
-        loop {
-            let Some((node, slot)) = waiting else { return };
-            let node = &nodes[node as usize];
-            let (child, count) = (node.child(slot as usize), node.count(slot as usize));
-            if count == 0 {
-                at = child;
-                break;
-            } else {
-                let first = child as usize;
-                let found = leaf(first..first + count as usize, t_max);
-                if found < t_max {
-                    if found < 0.0 {
-                        return;
-                    }
-                    t_max = found;
-                    limit = entry.limit(t_max);
-                    last = last_within(limit);
+        let met = meets(node, limit);
+        let mut child = if met.0 != 0 {
+            enter(node, fetch, &mut stack, met)
+        } else if let Some(entry) = stack.next(|entry| *entry <= last) {
+            child_of(entry)
+        } else {
+            return;
+        };
+        while let Some(items) = child.items() {
+            let found = leaf(items, t_max);
+            if found < t_max {
+                if found < 0.0 {
+                    return;
                 }
+                t_max = found;
+                limit = entry.limit(t_max);
+                last = last_within(limit);
             }
-            waiting = stack.next(|entry| *entry <= last).map(child_of);
+            let Some(entry) = stack.next(|entry| *entry <= last) else { return };
+            child = child_of(entry);
         }
+        node = &nodes[child.place()];
     }
 }
 
-/// The traversal in no order until `leaf` gives false: what waits are nodes, each with the children that are left of it.
+/// The traversal in no order until `leaf` gives false.
 #[inline(always)]
 fn walk_any(
     tree: &Tree,
     entry: Entry,
     t_max: f64,
     meets: impl Fn(&Node, f32) -> Met,
+    stored: Stored,
     leaf: &mut impl FnMut(Range<usize>) -> bool,
 ) {
     let nodes = &tree.nodes[..];
     let limit = entry.limit(t_max);
-    let (mut held, mut spilled) = ([(0u32, 0u32); STACK], Vec::new());
+    let (mut held, mut spilled) = ([Child::NONE; STACK], Vec::new());
     let mut stack = Stack::new(&mut held, &mut spilled);
-    let mut at = 0;
+    let mut node = &nodes[0];
     loop {
-        let (mut left, _) = meets(&nodes[at as usize], limit);
-        loop {
-            if left == 0 {
-                let Some(waiting) = stack.pop() else { return };
-                (at, left) = waiting;
+        let (mut met, _) = meets(node, limit);
+        let mut child;
+        if met != 0 {
+            child = node.children[take(&mut met)];
+            while met != 0 {
+                let waiting = node.children[take(&mut met)];
+                stored.fetch(nodes, waiting);
+                stack.push(waiting);
             }
-            let node = &nodes[at as usize];
-            let slot = (left.trailing_zeros() & SLOT) as usize;
-            left &= left - 1;
-            let (child, count) = (node.child(slot), node.count(slot));
-            if count == 0 {
-                if left != 0 {
-                    if nodes.len() >= MANY {
-                        wide::fetch(nodes, node.child((left.trailing_zeros() & SLOT) as usize));
-                    }
-                    stack.push((at, left));
-                }
-                at = child;
-                break;
-            }
-            let first = child as usize;
-            if !leaf(first..first + count as usize) {
+        } else {
+            let Some(waiting) = stack.pop() else { return };
+            child = waiting;
+        }
+        while let Some(items) = child.items() {
+            if !leaf(items) {
                 return;
             }
+            let Some(waiting) = stack.pop() else { return };
+            child = waiting;
         }
-    }
-}
-
-/// Insertion sort of a few.
-#[inline(always)]
-fn sort_far_first(entries: &mut [Pending]) {
-    for i in 1..entries.len() {
-        let mut j = i;
-        while j > 0 && entries[j] > entries[j - 1] {
-            entries.swap(j, j - 1);
-            j -= 1;
-        }
+        node = &nodes[child.place()];
     }
 }

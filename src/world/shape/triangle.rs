@@ -81,17 +81,19 @@ impl Sheared {
         if ((u < 0.0) | (v < 0.0) | (w < 0.0)) & ((u > 0.0) | (v > 0.0) | (w > 0.0)) {
             return None;
         }
-        self.meet_inside([u, v, w], [a[2], b[2], c[2]], limit, || corners.map(|p| *p))
+        self.meet_inside([u, v, w], [a[2], b[2], c[2]], limit, || {
+            distance_by_plane(self.origin, self.direction, corners.map(|p| *p))
+        })
     }
 
-    /// The same from the sides of the edges that the ray is on, all one or 0, and how deep the corners lie. `corners` are rarely asked for.
+    /// The same from the sides of the edges that the ray is on, all one or 0, and how deep the corners lie. The distance `by_plane` is rarely asked for.
     #[inline(always)]
     fn meet_inside(
         &self,
         [u, v, w]: [f64; 3],
         [a, b, c]: [f64; 3],
         limit: f64,
-        corners: impl FnOnce() -> [DVec3; 3],
+        by_plane: impl FnOnce() -> Option<f64>,
     ) -> Option<Meet> {
         let determinant = u + v + w;
         if determinant == 0.0 {
@@ -103,7 +105,7 @@ impl Sheared {
         let larger = |a: f64, b: f64| if a > b { a } else { b };
         let depth = larger(larger(a.abs(), b.abs()), c.abs()) * self.shear[2].abs();
         if t.abs() <= depth * NEAR {
-            t = distance_by_plane(self.origin, self.direction, corners())?;
+            t = by_plane()?;
         }
         (t > 0.0 && t <= limit).then_some(Meet { t, a: v * inverse, b: w * inverse, face: 0, part: 0 })
     }

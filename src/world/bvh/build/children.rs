@@ -1,8 +1,8 @@
 //! Which parts a node's children are.
 
-use super::WIDTH;
 use super::boxes::Boxed;
 use super::split::{Bins, MAX_LEAF, Part, Price};
+use crate::world::bvh::WIDTH;
 
 /// What visiting a child costs, in item tests.
 const LANE_COST: Price = Price::Lane(1.0);

@@ -4,7 +4,7 @@ use super::boxes::{Boxed, Item, bounds_of};
 use super::split::halve;
 use super::{finish, prepare, put};
 use crate::math::Aabb;
-use crate::world::bvh::{Node, Pricing, Tree, WIDTH};
+use crate::world::bvh::{Child, Node, Pricing, Tree, WIDTH};
 
 /// Items of a leaf at the most.
 const LEAF: usize = 4;
@@ -23,7 +23,7 @@ impl Tree {
 }
 
 /// Appends the nodes over a run, the topmost first; `first` is the run's place among all items.
-fn grow(run: &mut [Item], first: usize, nodes: &mut Vec<Node>) -> u32 {
+fn grow(run: &mut [Item], first: usize, nodes: &mut Vec<Node>) -> usize {
     let mut cuts = vec![0, run.len()];
     while cuts.len() <= WIDTH / 2 + 1 {
         let halves: Vec<usize> = cuts
@@ -42,13 +42,11 @@ fn grow(run: &mut [Item], first: usize, nodes: &mut Vec<Node>) -> u32 {
     for (slot, ends) in cuts.windows(2).enumerate() {
         let own = &mut run[ends[0]..ends[1]];
         let bounds = bounds_of(&*own);
-        let (at, count) = match own.len() {
-            0..=LEAF => ((first + ends[0]) as u32, own.len() as u32),
-            _ => (grow(own, first + ends[0], nodes), 0),
+        let child = match own.len() {
+            n @ 0..=LEAF => Child::leaf(first + ends[0], n),
+            _ => Child::node(grow(own, first + ends[0], nodes)),
         };
-        let node = &mut nodes[index];
-        put(node, slot, &bounds);
-        node.set_child(slot, at, count);
+        put(&mut nodes[index], slot, &bounds, child);
     }
-    index as u32
+    index
 }

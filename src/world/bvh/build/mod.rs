@@ -18,7 +18,7 @@ mod subtree;
 
 use super::frame::Frame;
 use super::survey::{BY_ONE_THREAD, is_usable, survey};
-use super::{Node, Pricing, Tree, WIDTH};
+use super::{Child, Node, Pricing, Tree};
 use crate::math::Aabb;
 use boxes::{Box32, Boxed, Item};
 use rayon::prelude::*;
@@ -41,19 +41,25 @@ fn prepare(count: usize, bounds_of: &(impl Fn(usize) -> Aabb + Sync)) -> Prepare
     Prepared { bounds, unbounded, frame, items: narrow(count, bounds_of, &frame) }
 }
 
-/// Enters the box of a child.
-fn put(node: &mut Node, slot: usize, bounds: &Box32) {
+/// Enters a child and its box.
+fn put(node: &mut Node, slot: usize, bounds: &Box32, child: Child) {
+    node.children[slot] = child;
     for a in 0..3 {
-        node.rows[a][slot] = bounds.lower(a);
-        node.rows[a + 3][slot] = bounds.upper(a);
+        node.planes[a][slot] = bounds.lower(a);
+        node.planes[a + 3][slot] = bounds.upper(a);
     }
 }
 
 /// The tree of nodes over items in their order; those without a finite box follow it.
 fn finish(ready: Prepared, mut nodes: Vec<Node>, order: Vec<u32>, at_once: usize) -> Tree {
     nodes.shrink_to_fit();
+    let spread = (!nodes.is_empty() && at_once > 1).then(|| aligned(&mut nodes, &order, at_once));
+    // Beyond what a leaf can name every item is offered to every ray: slow, but whole.
+    if spread.as_ref().unwrap_or(&order).len() > Child::MOST {
+        nodes = Vec::new();
+    }
     let has_leaves = !nodes.is_empty();
-    let mut order = if has_leaves && at_once > 1 { aligned(&mut nodes, &order, at_once) } else { order };
+    let mut order = spread.filter(|_| has_leaves).unwrap_or(order);
     let bounded = if has_leaves { order.len() } else { 0 };
     let unbounded = !ready.unbounded.is_empty();
     order.extend(ready.unbounded);
@@ -65,13 +71,12 @@ fn aligned(nodes: &mut [Node], order: &[u32], at_once: usize) -> Vec<u32> {
     // A leaf has some places to spare.
     let mut all = Vec::with_capacity(order.len() + order.len() / 3);
     for node in nodes {
-        for slot in 0..WIDTH {
-            let (first, count) = (node.child(slot) as usize, node.count(slot));
-            if count > 0 {
-                node.set_child(slot, all.len() as u32, count);
-                all.extend_from_slice(&order[first..first + count as usize]);
-                all.resize(all.len().next_multiple_of(at_once), order[first + count as usize - 1]);
-            }
+        for child in &mut node.children {
+            let Some(items) = child.items() else { continue };
+            let last = order[items.end - 1];
+            *child = Child::leaf(all.len(), items.len());
+            all.extend_from_slice(&order[items]);
+            all.resize(all.len().next_multiple_of(at_once), last);
         }
     }
     all

@@ -5,7 +5,7 @@ use super::cells::{Cell, Cells};
 use super::children::{Children, Start};
 use super::put;
 use super::split::{Bins, MAX_LEAF, Part};
-use crate::world::bvh::{Node, Pricing, WIDTH};
+use crate::world::bvh::{Child, Node, Pricing, WIDTH};
 use rayon::prelude::*;
 
 /// More items than this are first sorted into cells, fewer are split one by one. Measured on a million triangles and on as many
@@ -19,7 +19,7 @@ pub(super) fn grow(
     order: &mut [u32],
     nodes: &mut Vec<Node>,
     bins: &mut Bins,
-) -> u32 {
+) -> usize {
     if items.len() > ONE_BY_ONE {
         let (sorted, mut cells) = Cells::of(items);
         // All in one cell lie at one point.
@@ -35,7 +35,7 @@ pub(super) fn grow(
 }
 
 /// The node over items one by one, and all below it.
-fn over_items(items: &mut [Item], start: Start, nodes: &mut Vec<Node>, bins: &mut Bins) -> u32 {
+fn over_items(items: &mut [Item], start: Start, nodes: &mut Vec<Node>, bins: &mut Bins) -> usize {
     let children = Children::of(items, start, bins);
     let index = nodes.len();
     nodes.push(Node::EMPTY);
@@ -44,7 +44,7 @@ fn over_items(items: &mut [Item], start: Start, nodes: &mut Vec<Node>, bins: &mu
         let below = children.below(slot, own, bins).map(|start| over_items(own, start, nodes, bins));
         fill(&mut nodes[index], slot, part, below);
     }
-    index as u32
+    index
 }
 
 /// The node over cells, and all below it.
@@ -55,7 +55,7 @@ fn over_cells(
     order: &mut [u32],
     nodes: &mut Vec<Node>,
     bins: &mut Bins,
-) -> u32 {
+) -> usize {
     if cells.len() == 1 || part.n_items <= ONE_BY_ONE {
         return grow(&mut sorted.gather(cells), part.as_run(part.n_items), order, nodes, bins);
     }
@@ -81,7 +81,7 @@ fn over_cells(
     for (slot, (part, below)) in children.parts().iter().zip(below).enumerate() {
         fill(&mut nodes[index], slot, part, below);
     }
-    index as u32
+    index
 }
 
 /// The node over a part in cells; none for a leaf.
@@ -92,7 +92,7 @@ fn child_of_cells(
     order: &mut [u32],
     nodes: &mut Vec<Node>,
     bins: &mut Bins,
-) -> Option<u32> {
+) -> Option<usize> {
     if part.n_items > MAX_LEAF {
         return Some(over_cells(sorted, cells, part, order, nodes, bins));
     }
@@ -108,7 +108,7 @@ fn apart(
     runs: Vec<(&mut [Cell], Part, &mut [u32])>,
     nodes: &mut Vec<Node>,
     pricing: Pricing,
-) -> Vec<Option<u32>> {
+) -> Vec<Option<usize>> {
     let build = |(cells, part, order): (&mut [Cell], Part, &mut [u32])| {
         let mut below = Vec::new();
         let bins = &mut Bins::new(pricing);
@@ -119,13 +119,12 @@ fn apart(
 }
 
 /// Appends nodes that count from 0; gives the index of the first.
-pub(super) fn append(below: Vec<Node>, nodes: &mut Vec<Node>) -> u32 {
-    let base = nodes.len() as u32;
+pub(super) fn append(below: Vec<Node>, nodes: &mut Vec<Node>) -> usize {
+    let base = nodes.len();
     nodes.extend(below.into_iter().map(|mut node| {
-        for slot in 0..WIDTH {
-            // Node 0 is nobody's child: where it stands there is none.
-            if node.count(slot) == 0 && node.child(slot) > 0 {
-                node.set_child(slot, node.child(slot) + base, 0);
+        for child in &mut node.children {
+            if child.count() == 0 && *child != Child::NONE {
+                *child = Child::node(child.place() + base);
             }
         }
         node
@@ -133,10 +132,7 @@ pub(super) fn append(below: Vec<Node>, nodes: &mut Vec<Node>) -> u32 {
     base
 }
 
-fn fill(node: &mut Node, slot: usize, part: &Part, below: Option<u32>) {
-    put(node, slot, &part.bounds);
-    match below {
-        Some(index) => node.set_child(slot, index, 0),
-        None => node.set_child(slot, part.first as u32, part.n_items as u32),
-    }
+fn fill(node: &mut Node, slot: usize, part: &Part, below: Option<usize>) {
+    let leaf = || Child::leaf(part.first, part.n_items);
+    put(node, slot, &part.bounds, below.map_or_else(leaf, Child::node));
 }

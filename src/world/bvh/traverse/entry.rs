@@ -2,7 +2,7 @@
 
 use super::{FRAME_SIZE, MARGIN, SLACK, clip_by};
 use crate::world::bvh::frame::round_up;
-use crate::world::bvh::{Node, Tree, WIDTH};
+use crate::world::bvh::{Node, Row, Tree, WIDTH};
 use glam::DVec3;
 
 /// How a ray's distances are those of a tree's frame, from where it starts, or from where it enters the tree's bounds if it starts farther off.
@@ -38,20 +38,25 @@ pub struct Narrow {
     pub rows: &'static Rows,
 }
 
-/// Where the planes that a ray enters and leaves through begin among those of a node, by axis.
-pub type Rows = [[u8; 2]; 3];
+/// The planes that a ray enters and leaves through in a node, by axis.
+pub type Rows = [[Row; 2]; 3];
 
 /// [`Rows`] by which coordinates of a direction are negative, as bits.
 #[inline(always)]
 pub fn rows_of(negative: u32) -> &'static Rows {
     // Looked up and not computed, as that would be done again at every node for want of registers.
     static ROWS: [Rows; 8] = {
-        let mut all = [[[0; 2]; 3]; 8];
+        use Row::*;
+        let ways = [
+            [[LowerX, UpperX], [UpperX, LowerX]],
+            [[LowerY, UpperY], [UpperY, LowerY]],
+            [[LowerZ, UpperZ], [UpperZ, LowerZ]],
+        ];
+        let mut all = [[[LowerX; 2]; 3]; 8];
         let mut i = 0;
         while i < 24 {
             let (negative, axis) = (i / 3, i % 3);
-            let (lower, upper) = ((WIDTH * axis) as u8, (WIDTH * (axis + 3)) as u8);
-            all[negative][axis] = if negative >> axis & 1 == 0 { [lower, upper] } else { [upper, lower] };
+            all[negative][axis] = ways[axis][negative >> axis & 1];
             i += 1;
         }
         all
@@ -119,6 +124,6 @@ impl Narrow {
     /// A node's planes that the ray enters through along an axis, and those it leaves through.
     #[inline(always)]
     pub fn planes<'n>(&self, node: &'n Node, axis: usize) -> [&'n [f32; WIDTH]; 2] {
-        self.rows[axis].map(|first| node.row_from(first.into()))
+        self.rows[axis].map(|row| node.row(row))
     }
 }

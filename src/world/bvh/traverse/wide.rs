@@ -4,7 +4,7 @@
 //! instructions.
 
 use super::entry::{Entry, Narrow};
-use super::{Met, Node, Tree, WIDTH};
+use super::{Met, Node, Stored, Tree, WIDTH};
 use glam::DVec3;
 use std::ops::Range;
 
@@ -17,7 +17,7 @@ pub(super) fn walk(
     leaf: &mut impl FnMut(Range<usize>, f64) -> f64,
 ) {
     #[cfg(target_arch = "x86_64")]
-    if crate::math::vectors::has_avx2_and_fma() {
+    if crate::math::vectors::has_v3() {
         // SAFETY: the processor has just been found to have what the function is compiled for.
         #[allow(unsafe_code, reason = "code for instructions that not every processor has")]
         return unsafe {
@@ -26,7 +26,7 @@ pub(super) fn walk(
         };
     }
     if let Some((entry, narrow)) = Entry::entered(tree, ray, t_max) {
-        super::walk(tree, entry, t_max, |node, limit| meets(&narrow, node, limit), leaf);
+        super::walk(tree, entry, t_max, |node, limit| meets(&narrow, node, limit), Stored::NOWHERE, leaf);
     }
 }
 
@@ -39,7 +39,7 @@ pub(super) fn walk_any(
     leaf: &mut impl FnMut(Range<usize>) -> bool,
 ) {
     #[cfg(target_arch = "x86_64")]
-    if crate::math::vectors::has_avx2_and_fma() {
+    if crate::math::vectors::has_v3() {
         // SAFETY: the processor has just been found to have what the function is compiled for.
         #[allow(unsafe_code, reason = "code for instructions that not every processor has")]
         return unsafe {
@@ -48,24 +48,7 @@ pub(super) fn walk_any(
         };
     }
     if let Some((entry, narrow)) = Entry::entered(tree, ray, t_max) {
-        super::walk_any(tree, entry, t_max, |node, limit| meets(&narrow, node, limit), leaf);
-    }
-}
-
-/// Has the memory of a node brought near. Whatever the index says: that of an item does no harm.
-#[inline(always)]
-pub(super) fn fetch(nodes: &[Node], index: u32) {
-    #[cfg(target_arch = "x86_64")]
-    {
-        use std::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
-        let at = nodes.as_ptr().wrapping_add(index as usize).cast::<i8>();
-        for line in 0..4 {
-            // SAFETY: what a place holds is a hint here, which is neither read nor need be there.
-            #[allow(unsafe_code, reason = "a hint has no safe way")]
-            unsafe {
-                _mm_prefetch::<_MM_HINT_T0>(at.wrapping_add(64 * line))
-            };
-        }
+        super::walk_any(tree, entry, t_max, |node, limit| meets(&narrow, node, limit), Stored::NOWHERE, leaf);
     }
 }
 
@@ -107,38 +90,40 @@ mod x86 {
     impl Tree {
         /// [`Tree::traverse`] of a tree that is [whole](Tree::is_whole), for callers that are compiled for these instructions themselves: `leaf` becomes a
         /// part of it, and what both need stays in registers.
-        #[target_feature(enable = "avx2,fma")]
+        #[target_feature(enable = "avx2,bmi1,bmi2,fma")]
         #[inline]
         pub(in crate::world) fn traverse_avx2(
             &self,
             origin: DVec3,
             direction: DVec3,
             t_max: f64,
+            stored: Stored,
             mut leaf: impl FnMut(Range<usize>, f64) -> f64,
         ) {
             if t_max >= 0.0 {
-                walk_avx2(self, [origin, direction], t_max, &mut leaf);
+                walk_avx2(self, [origin, direction], t_max, stored, &mut leaf);
             }
         }
 
         /// [`Tree::traverse_any`], so.
-        #[target_feature(enable = "avx2,fma")]
+        #[target_feature(enable = "avx2,bmi1,bmi2,fma")]
         #[inline]
         pub(in crate::world) fn traverse_any_avx2(
             &self,
             origin: DVec3,
             direction: DVec3,
             t_max: f64,
+            stored: Stored,
             mut leaf: impl FnMut(Range<usize>) -> bool,
         ) {
             if t_max >= 0.0 {
-                walk_any_avx2(self, [origin, direction], t_max, &mut leaf);
+                walk_any_avx2(self, [origin, direction], t_max, stored, &mut leaf);
             }
         }
     }
 
     /// The ray number by number, so that it comes in registers: what has just been written so cannot be read as a whole before the cache has it.
-    #[target_feature(enable = "avx2,fma")]
+    #[target_feature(enable = "avx2,bmi1,bmi2,fma")]
     #[allow(clippy::too_many_arguments, reason = "numbers that come in registers")]
     pub(super) fn walk(
         tree: &Tree,
@@ -152,11 +137,11 @@ mod x86 {
         leaf: &mut impl FnMut(Range<usize>, f64) -> f64,
     ) {
         let ray = [DVec3::new(x, y, z), DVec3::new(along_x, along_y, along_z)];
-        walk_avx2(tree, ray, t_max, leaf);
+        walk_avx2(tree, ray, t_max, Stored::NOWHERE, leaf);
     }
 
     /// The same in no order.
-    #[target_feature(enable = "avx2,fma")]
+    #[target_feature(enable = "avx2,bmi1,bmi2,fma")]
     #[allow(clippy::too_many_arguments, reason = "numbers that come in registers")]
     pub(super) fn walk_any(
         tree: &Tree,
@@ -170,21 +155,33 @@ mod x86 {
         leaf: &mut impl FnMut(Range<usize>) -> bool,
     ) {
         let ray = [DVec3::new(x, y, z), DVec3::new(along_x, along_y, along_z)];
-        walk_any_avx2(tree, ray, t_max, leaf);
+        walk_any_avx2(tree, ray, t_max, Stored::NOWHERE, leaf);
     }
 
-    #[target_feature(enable = "avx2,fma")]
+    #[target_feature(enable = "avx2,bmi1,bmi2,fma")]
     #[inline]
-    fn walk_avx2(tree: &Tree, ray: [DVec3; 2], t_max: f64, leaf: &mut impl FnMut(Range<usize>, f64) -> f64) {
+    fn walk_avx2(
+        tree: &Tree,
+        ray: [DVec3; 2],
+        t_max: f64,
+        stored: Stored,
+        leaf: &mut impl FnMut(Range<usize>, f64) -> f64,
+    ) {
         let Some((entry, narrow)) = entered(tree, ray, t_max) else { return };
-        super::super::walk(tree, entry, t_max, |node, limit| narrow.meets(node, limit), leaf);
+        super::super::walk(tree, entry, t_max, |node, limit| narrow.meets(node, limit), stored, leaf);
     }
 
-    #[target_feature(enable = "avx2,fma")]
+    #[target_feature(enable = "avx2,bmi1,bmi2,fma")]
     #[inline]
-    fn walk_any_avx2(tree: &Tree, ray: [DVec3; 2], t_max: f64, leaf: &mut impl FnMut(Range<usize>) -> bool) {
+    fn walk_any_avx2(
+        tree: &Tree,
+        ray: [DVec3; 2],
+        t_max: f64,
+        stored: Stored,
+        leaf: &mut impl FnMut(Range<usize>) -> bool,
+    ) {
         let Some((entry, narrow)) = entered(tree, ray, t_max) else { return };
-        super::super::walk_any(tree, entry, t_max, |node, limit| narrow.meets(node, limit), leaf);
+        super::super::walk_any(tree, entry, t_max, |node, limit| narrow.meets(node, limit), stored, leaf);
     }
 
     /// [`Narrow`], each number eight times.
@@ -196,7 +193,7 @@ mod x86 {
     }
 
     /// [`Entry::entered`], all coordinates at once, with the same roundings.
-    #[target_feature(enable = "avx2,fma")]
+    #[target_feature(enable = "avx2,bmi1,bmi2,fma")]
     #[inline]
     fn entered(tree: &Tree, [origin, direction]: [DVec3; 2], t_max: f64) -> Option<(Entry, Wide)> {
         let four = |v: DVec3| _mm256_setr_pd(v.x, v.y, v.z, 0.0);
@@ -223,7 +220,7 @@ mod x86 {
     }
 
     /// The first three numbers, each eight times.
-    #[target_feature(enable = "avx2,fma")]
+    #[target_feature(enable = "avx2,bmi1,bmi2,fma")]
     #[inline]
     fn spread(x: __m128) -> [__m256; 3] {
         [
@@ -240,7 +237,7 @@ mod x86 {
     }
 
     impl Wide {
-        #[target_feature(enable = "avx2,fma")]
+        #[target_feature(enable = "avx2,bmi1,bmi2,fma")]
         #[inline]
         fn of(narrow: &Narrow) -> Wide {
             let spread = |from: &[f32; 4]| [from[0], from[1], from[2]].map(|x| _mm256_set1_ps(x));
@@ -254,12 +251,12 @@ mod x86 {
 
         /// [`super::meets`], eight children at once. The larger and the smaller of two give their second operand where one is NaN, as
         /// the comparisons there do.
-        #[target_feature(enable = "avx2,fma")]
+        #[target_feature(enable = "avx2,bmi1,bmi2,fma")]
         #[inline]
         fn meets(&self, node: &Node, limit: f32) -> Met {
             let (mut near, mut far) = (_mm256_setzero_ps(), _mm256_set1_ps(limit));
             for a in 0..3 {
-                let [enter, leave] = self.rows[a].map(|first| load_8(node.row_from(first.into())));
+                let [enter, leave] = self.rows[a].map(|row| load_8(node.row(row)));
                 near = _mm256_max_ps(_mm256_fmadd_ps(enter, self.inverse[a], self.near[a]), near);
                 far = _mm256_min_ps(_mm256_fmadd_ps(leave, self.inverse[a], self.far[a]), far);
             }
@@ -293,7 +290,7 @@ mod tests {
             let mut to_plain = |range, t_max| noted(&mut by_plain, range, t_max);
             if let Some((entry, narrow)) = Entry::entered(&tree, [&origin, &direction], 1e3) {
                 let meets = |node: &Node, limit| meets_fused(&narrow, node, limit);
-                super::super::walk(&tree, entry, 1e3, meets, &mut to_plain);
+                super::super::walk(&tree, entry, 1e3, meets, Stored::NOWHERE, &mut to_plain);
             }
             walk(&tree, [&origin, &direction], 1e3, &mut |range, t_max| noted(&mut by_wide, range, t_max));
             n_offered += by_plain.len();

@@ -17,10 +17,32 @@ pub enum Corners {
     Shared(Vec<[u32; 3]>),
 }
 
-/// Four triangles by axis, corner and triangle, so that one instruction reads a coordinate of all.
+/// Four triangles, so that one instruction reads a coordinate of all: rows of one corner's coordinate, of x three, of y and of z.
 #[derive(Clone, Copy, Debug)]
 #[repr(align(16))]
-pub struct Four(pub [[[f32; AT_ONCE]; 3]; 3]);
+pub struct Four(pub [[f32; AT_ONCE]; 9]);
+
+/// An axis, by how many rows of a [`Four`] stand before its own.
+#[derive(Clone, Copy)]
+#[repr(u8)]
+pub enum Axis {
+    /// First.
+    X = 0,
+    /// After it.
+    Y = 3,
+    /// Last.
+    Z = 6,
+}
+
+impl Axis {
+    /// The two axes after one, and it. Looked up where it is needed: then it is known to be within a [`Four`].
+    #[inline]
+    pub fn ending_with(number: usize) -> &'static [Axis; 3] {
+        use Axis::*;
+        const TURNED: [[Axis; 3]; 3] = [[Y, Z, X], [Z, X, Y], [X, Y, Z]];
+        &TURNED[number.min(2)]
+    }
+}
 
 impl Corners {
     /// Of triangles over vertices, in their order.
@@ -29,12 +51,12 @@ impl Corners {
         if !vertices.iter().all(is_narrow) {
             return Corners::Shared(triangles.collect());
         }
-        let mut all = vec![Four([[[0.0; AT_ONCE]; 3]; 3]); triangles.len().div_ceil(AT_ONCE)];
+        let mut all = vec![Four([[0.0; AT_ONCE]; 9]); triangles.len().div_ceil(AT_ONCE)];
         for (i, indices) in triangles.enumerate() {
             let Four(rows) = &mut all[i / AT_ONCE];
             for (corner, index) in indices.into_iter().enumerate() {
-                for (row, x) in rows.iter_mut().zip(vertices[index as usize].as_vec3().to_array()) {
-                    row[corner][i % AT_ONCE] = x;
+                for (axis, x) in vertices[index as usize].as_vec3().to_array().into_iter().enumerate() {
+                    rows[3 * axis + corner][i % AT_ONCE] = x;
                 }
             }
         }
@@ -63,7 +85,8 @@ impl Four {
     /// The corners of one.
     #[inline]
     pub fn triangle(&self, lane: usize) -> [DVec3; 3] {
-        let Four([x, y, z]) = self;
-        std::array::from_fn(|i| DVec3::new(x[i][lane].into(), y[i][lane].into(), z[i][lane].into()))
+        let Four(rows) = self;
+        let at = |row: usize| rows[row][lane].into();
+        std::array::from_fn(|corner| DVec3::new(at(corner), at(3 + corner), at(6 + corner)))
     }
 }

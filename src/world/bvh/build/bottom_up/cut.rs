@@ -4,7 +4,7 @@ use super::super::split::MAX_LEAF;
 use super::super::{put, subtree::append};
 use super::{Binary, Inner};
 use crate::world::bvh::build::boxes::Box32;
-use crate::world::bvh::{Node, Pricing, WIDTH};
+use crate::world::bvh::{Child, Node, Pricing, WIDTH};
 use rayon::prelude::*;
 use smallvec::SmallVec;
 
@@ -108,7 +108,7 @@ type Part<'o> = (u32, usize, &'o mut [u32]);
 
 impl Cutter<'_> {
     /// The node over an inner one, and all below it: its index and box. `first` is the place of its first item.
-    fn grow(&self, id: u32, first: usize, order: &mut [u32], nodes: &mut Vec<Node>) -> (u32, Box32) {
+    fn grow(&self, id: u32, first: usize, order: &mut [u32], nodes: &mut Vec<Node>) -> (usize, Box32) {
         let (index, n_items) = (nodes.len(), order.len());
         nodes.push(Node::EMPTY);
         let (mut first, mut order) = (first, order);
@@ -120,9 +120,8 @@ impl Cutter<'_> {
             first += n_items;
         });
         let mut bounds = Box32::EMPTY;
-        let mut enter = |nodes: &mut Vec<Node>, slot: usize, (child, count, own): (u32, u32, Box32)| {
-            put(&mut nodes[index], slot, &own);
-            nodes[index].set_child(slot, child, count);
+        let mut enter = |nodes: &mut Vec<Node>, slot: usize, (child, own): (Child, Box32)| {
+            put(&mut nodes[index], slot, &own, child);
             bounds.grow(&own);
         };
         if n_items > BY_ONE_THREAD && rayon::current_num_threads() > 1 {
@@ -132,8 +131,8 @@ impl Cutter<'_> {
             };
             let built: Vec<_> = parts.into_vec().into_par_iter().map(apart).collect();
             for (slot, (mut child, below)) in built.into_iter().enumerate() {
-                if child.1 == 0 {
-                    child.0 = append(below, nodes);
+                if !below.is_empty() {
+                    child.0 = Child::node(append(below, nodes));
                 }
                 enter(nodes, slot, child);
             }
@@ -144,21 +143,21 @@ impl Cutter<'_> {
                 enter(nodes, slot, child);
             }
         }
-        (index as u32, bounds)
+        (index, bounds)
     }
 
-    /// A node over a child, or its first item and how many a leaf has; and its box.
-    fn child(&self, (id, first, order): Part<'_>, nodes: &mut Vec<Node>) -> (u32, u32, Box32) {
+    /// A child, its nodes appended, and its box.
+    fn child(&self, (id, first, order): Part<'_>, nodes: &mut Vec<Node>) -> (Child, Box32) {
         if self.binary.inner(id).is_some_and(|inner| !inner.ways.is_leaf()) {
             let (index, bounds) = self.grow(id, first, order, nodes);
-            return (index, 0, bounds);
+            return (Child::node(index), bounds);
         }
         let (count, mut bounds, mut order) = (order.len(), Box32::EMPTY, order.iter_mut());
         self.each_item(id, &mut |place| {
             bounds.grow(&self.binary.bounds[place]);
             *order.next().expect("a place for each item") = self.numbers[place];
         });
-        (first as u32, count as u32, bounds)
+        (Child::leaf(first, count), bounds)
     }
 
     fn inner(&self, id: u32) -> &Inner {

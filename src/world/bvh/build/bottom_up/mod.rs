@@ -61,12 +61,13 @@ impl Tree {
 mod tests {
     use super::*;
     use crate::math::random::Random;
+    use crate::world::bvh::Child;
     use glam::DVec3;
 
-    fn depth(tree: &Tree, node: u32) -> usize {
-        let node = &tree.nodes[node as usize];
-        let below = (0..8).filter(|slot| node.count(*slot) == 0 && node.child(*slot) > 0);
-        1 + below.map(|slot| depth(tree, node.child(slot))).max().unwrap_or(0)
+    fn depth(tree: &Tree, node: usize) -> usize {
+        let children = tree.nodes[node].children.iter();
+        let below = children.filter(|child| child.count() == 0 && **child != Child::NONE);
+        1 + below.map(|child| depth(tree, child.place())).max().unwrap_or(0)
     }
 
     fn built(boxes: &[Aabb]) -> Tree {

@@ -16,7 +16,7 @@ pub(super) fn nearest(
     any: bool,
 ) -> Option<(usize, Meet)> {
     #[cfg(target_arch = "x86_64")]
-    if crate::math::vectors::has_avx2_and_fma()
+    if crate::math::vectors::has_v3()
         && let Tree::Bvh(tree) = tree
         && tree.is_whole()
     {
@@ -35,9 +35,9 @@ mod x86 {
     use super::super::Found;
     use super::*;
     use crate::math::vectors::lanes::{load_3, store_4, widen_4};
-    use crate::world::bvh;
-    use crate::world::shape::triangle::Sheared;
-    use crate::world::shape::triangle::leaf::{AT_ONCE, Corners, Four};
+    use crate::world::bvh::{self, Stored, fetch_entry};
+    use crate::world::shape::triangle::leaf::{AT_ONCE, Axis, Corners, Four};
+    use crate::world::shape::triangle::{Sheared, distance_by_plane};
     use glam::DVec3;
     use std::arch::x86_64::*;
     use std::ops::Range;
@@ -46,7 +46,7 @@ mod x86 {
     type Rows = [__m256d; 3];
 
     /// The ray number by number, so that it comes in registers: what has just been written so cannot be read as a whole before the cache has it.
-    #[target_feature(enable = "avx2,fma")]
+    #[target_feature(enable = "avx2,bmi1,bmi2,fma")]
     #[allow(clippy::too_many_arguments, reason = "numbers that come in registers")]
     pub(super) fn nearest(
         among: &Ordered,
@@ -70,7 +70,7 @@ mod x86 {
         }
     }
 
-    #[target_feature(enable = "avx2,fma")]
+    #[target_feature(enable = "avx2,bmi1,bmi2,fma")]
     fn nearest_narrow<const ANY: bool>(
         among: &Ordered,
         all: &[Four],
@@ -81,22 +81,21 @@ mod x86 {
         let sheared = Sheared::new(ray);
         let start = sheared.start.map(|x| _mm256_set1_pd(x));
         let shear = [sheared.shear[0], sheared.shear[1]].map(|x| _mm256_set1_pd(x));
-        // Below 3, as they are anyway.
-        let [axis_x, axis_y, axis_z] = sheared.axes.map(|axis| axis.min(2));
+        let axes = Axis::ending_with(sheared.axes[2]);
         let mut found = Found::nothing(limit);
-        // Each four that a range touches, whatever else is in it.
+        // Each four that a range touches. What else is in it are triangles too.
         let look = |found: &mut Found, range: Range<usize>| {
             for at in range.start / AT_ONCE..range.end.div_ceil(AT_ONCE) {
                 let four = &all[at];
-                let row = |axis: usize, i: usize, corner: usize| {
-                    _mm256_sub_pd(widen_4(&four.0[axis][corner]), start[i])
+                let row = |axis: usize, corner: usize| {
+                    _mm256_sub_pd(widen_4(&four.0[axes[axis] as usize + corner]), start[axis])
                 };
-                let z = [row(axis_z, 2, 0), row(axis_z, 2, 1), row(axis_z, 2, 2)];
-                let sheared_row = |axis: usize, i: usize, corner: usize| {
-                    _mm256_sub_pd(row(axis, i, corner), _mm256_mul_pd(shear[i], z[corner]))
+                let z = [row(2, 0), row(2, 1), row(2, 2)];
+                let sheared_row = |axis: usize, corner: usize| {
+                    _mm256_sub_pd(row(axis, corner), _mm256_mul_pd(shear[axis], z[corner]))
                 };
-                let x = [sheared_row(axis_x, 0, 0), sheared_row(axis_x, 0, 1), sheared_row(axis_x, 0, 2)];
-                let y = [sheared_row(axis_y, 1, 0), sheared_row(axis_y, 1, 1), sheared_row(axis_y, 1, 2)];
+                let x = [sheared_row(0, 0), sheared_row(0, 1), sheared_row(0, 2)];
+                let y = [sheared_row(1, 0), sheared_row(1, 1), sheared_row(1, 2)];
                 let side =
                     |p: usize, q: usize| _mm256_sub_pd(_mm256_mul_pd(x[p], y[q]), _mm256_mul_pd(y[p], x[q]));
                 let (u, v, w) = (side(2, 1), side(0, 2), side(1, 0));
@@ -111,25 +110,24 @@ mod x86 {
                 if within == 0 {
                     continue;
                 }
+                // Those at the end of a leaf only fill it up.
+                within &= (1 << (range.end - AT_ONCE * at).min(AT_ONCE)) - 1;
                 let [u, v, w] = [u, v, w].map(|x| store_4(x));
                 let [a, b, c] = z.map(|x| store_4(x));
                 while within != 0 {
                     let lane = within.trailing_zeros() as usize & 3;
                     within &= within - 1;
-                    let position = AT_ONCE * at + lane;
-                    if !range.contains(&position) {
-                        continue;
-                    }
                     let sides = [u[lane], v[lane], w[lane]];
                     let meet = if sides.contains(&0.0) {
                         meet_on_edge(*ray, four.triangle(lane), found.limit)
                     } else {
                         sheared.meet_inside(sides, [a[lane], b[lane], c[lane]], found.limit, || {
-                            four.triangle(lane)
+                            distance_by_plane(ray.origin, ray.direction, four.triangle(lane))
                         })
                     };
                     if let Some(meet) = meet {
-                        found.take(position, meet, among.order);
+                        found.take(AT_ONCE * at + lane, meet, among.order);
+                        fetch_entry(among.order, AT_ONCE * at + lane);
                         if ANY {
                             return false;
                         }
@@ -139,9 +137,11 @@ mod x86 {
             true
         };
         if ANY {
-            tree.traverse_any_avx2(ray.origin, ray.direction, limit, |range| look(&mut found, range));
+            tree.traverse_any_avx2(ray.origin, ray.direction, limit, Stored::of(all, AT_ONCE), |range| {
+                look(&mut found, range)
+            });
         } else {
-            tree.traverse_avx2(ray.origin, ray.direction, limit, |range, _| {
+            tree.traverse_avx2(ray.origin, ray.direction, limit, Stored::of(all, AT_ONCE), |range, _| {
                 look(&mut found, range);
                 found.limit
             });
@@ -149,7 +149,7 @@ mod x86 {
         found.get()
     }
 
-    #[target_feature(enable = "avx2,fma")]
+    #[target_feature(enable = "avx2,bmi1,bmi2,fma")]
     fn nearest_shared<const ANY: bool>(
         among: &Ordered,
         all: &[[u32; 3]],
@@ -175,7 +175,7 @@ mod x86 {
     }
 
     /// The search by a test of the triangle at a position.
-    #[target_feature(enable = "avx2,fma")]
+    #[target_feature(enable = "avx2,bmi1,bmi2,fma")]
     #[inline]
     fn search<const ANY: bool>(
         among: &Ordered,
@@ -186,7 +186,7 @@ mod x86 {
     ) -> Option<(usize, Meet)> {
         let mut found = Found::nothing(limit);
         if ANY {
-            tree.traverse_any_avx2(ray.origin, ray.direction, limit, |range| {
+            tree.traverse_any_avx2(ray.origin, ray.direction, limit, Stored::NOWHERE, |range| {
                 for position in range {
                     if let Some(meet) = test(position, limit) {
                         found.take(position, meet, among.order);
@@ -196,7 +196,7 @@ mod x86 {
                 true
             });
         } else {
-            tree.traverse_avx2(ray.origin, ray.direction, limit, |range, _| {
+            tree.traverse_avx2(ray.origin, ray.direction, limit, Stored::NOWHERE, |range, _| {
                 for position in range {
                     if let Some(meet) = test(position, found.limit) {
                         found.take(position, meet, among.order);
@@ -209,7 +209,7 @@ mod x86 {
     }
 
     /// Rows of the columns a, b, c.
-    #[target_feature(enable = "avx2,fma")]
+    #[target_feature(enable = "avx2,bmi1,bmi2,fma")]
     #[inline]
     fn transposed(a: __m256d, b: __m256d, c: __m256d) -> Rows {
         let (xz, y) = (_mm256_unpacklo_pd(a, b), _mm256_unpackhi_pd(a, b));
@@ -221,7 +221,7 @@ mod x86 {
         ]
     }
 
-    #[target_feature(enable = "avx2,fma")]
+    #[target_feature(enable = "avx2,bmi1,bmi2,fma")]
     #[inline]
     fn meet(
         ray: &LocalRay,
@@ -247,7 +247,9 @@ mod x86 {
             return None;
         }
         let ([u, v, w, _], [a, b, c, _]) = (store_4(sides), store_4(z));
-        sheared.meet_inside([u, v, w], [a, b, c], limit, corners)
+        sheared.meet_inside([u, v, w], [a, b, c], limit, || {
+            distance_by_plane(ray.origin, ray.direction, corners())
+        })
     }
 
     #[cold]
