@@ -15,7 +15,7 @@ pub type Answer = Option<(f32, u32)>;
 pub struct RaySet {
     /// True where any meeting will do.
     pub any: bool,
-    rays: Vec<RawRay>,
+    rays: Vec<Line>,
     answers: Vec<Answer>,
 }
 
@@ -38,8 +38,8 @@ pub struct Verdict {
 
 impl RaySet {
     /// Rays that have not been asked.
-    pub fn new(rays: Vec<RawRay>, any: bool) -> RaySet {
-        RaySet { any, answers: vec![None; rays.len()], rays }
+    pub fn new(rays: &[RawRay], any: bool) -> RaySet {
+        RaySet { any, answers: vec![None; rays.len()], rays: rays.iter().map(line).collect() }
     }
 
     /// How many rays there are.
@@ -60,7 +60,7 @@ impl RaySet {
     /// Asks some of them, one after another.
     pub fn ask(&mut self, subject: &Subject<'_>, some: Range<usize>) {
         for (ray, answer) in self.rays[some.clone()].iter().zip(&mut self.answers[some]) {
-            *answer = subject.meet(&line(ray), self.any).map(|(t, triangle)| (t as f32, triangle));
+            *answer = subject.meet(ray, self.any).map(|(t, triangle)| (t as f32, triangle));
         }
     }
 
@@ -82,10 +82,10 @@ impl RaySet {
             }
         }
         for &i in off.iter().step_by(off.len().div_ceil(most.max(1)).max(1)) {
-            let line = line(&self.rays[i]);
-            let truth = every.meet(&line, false).map(|(t, _)| t);
+            let line = &self.rays[i];
+            let truth = every.meet(line, false).map(|(t, _)| t);
             let is_right = |answer: Option<u32>| match answer {
-                Some(triangle) if !self.any => truth.is_some() && every.distance_to(&line, triangle) == truth,
+                Some(triangle) if !self.any => truth.is_some() && every.distance_to(line, triangle) == truth,
                 _ => answer.is_some() == truth.is_some(),
             };
             verdict.judged += 1;
@@ -116,7 +116,7 @@ mod tests {
         let ray = |i: usize| [0.013 * i as f32 - 0.61, 2.0, 0.007 * i as f32 - 0.33, 0.0, -1.0, 0.0, 9.0];
         let mut rays: Vec<RawRay> = (0..90).map(ray).collect();
         rays.push([7.0, 2.0, 0.0, 0.0, -1.0, 0.0, 9.0]);
-        let mut set = RaySet::new(rays, any);
+        let mut set = RaySet::new(&rays, any);
         set.ask(&Subject::new(&mesh, Builder::Bvh), 0..91);
         set
     }

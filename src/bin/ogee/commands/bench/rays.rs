@@ -70,7 +70,7 @@ impl Desk<'_> {
             [how @ ("closest" | "any"), file, first, count] => {
                 let (first, count) = (number(first)?, number(count)?);
                 if !self.sets.contains_key(*file) {
-                    self.sets.insert((*file).into(), RaySet::new(read(file)?, *how == "any"));
+                    self.sets.insert((*file).into(), RaySet::new(&read(file)?, *how == "any"));
                 }
                 let set = self.sets.get_mut(*file).expect("it has just been read");
                 set.any = *how == "any";
