@@ -1,8 +1,8 @@
 //! Rays through aggregates and their placements.
 
 use super::aggregate::{Aggregate, Group, Item};
+use super::bvh::Stored;
 use super::shape::{Csg, LocalRay, Meet, Shape};
-use super::tree::Tree;
 use super::{PrimitiveId, RayKind, World};
 use crate::scene::Hide;
 use std::ops::Range;
@@ -82,7 +82,7 @@ impl<'w> Query<'w> {
 
     #[inline]
     fn visit_group(&mut self, group: &Group, local: &Local<'_>) {
-        self.each(&group.tree, local, |query, range| {
+        self.each(group, local, |query, range| {
             for position in range {
                 query.visit_item(group, position, local);
                 if query.any && query.found.is_some() {
@@ -94,16 +94,17 @@ impl<'w> Query<'w> {
 
     /// All that the ray may meet, near ones first; where any meeting will do in no order, until there is one.
     #[inline(always)]
-    fn each(&mut self, tree: &Tree, local: &Local<'_>, test: impl Fn(&mut Self, Range<usize>)) {
+    fn each(&mut self, group: &Group, local: &Local<'_>, test: impl Fn(&mut Self, Range<usize>)) {
         let LocalRay { origin, direction } = local.ray;
         let limit = self.limit * local.per_world;
+        let (tree, stored) = (&group.tree, Stored::of(&group.items, 1));
         if self.any {
-            tree.traverse_any(origin, direction, limit, |range| {
+            tree.traverse_any(origin, direction, limit, stored, |range| {
                 test(self, range);
                 self.found.is_none()
             });
         } else {
-            tree.traverse(origin, direction, limit, |range, _| {
+            tree.traverse(origin, direction, limit, stored, |range, _| {
                 test(self, range);
                 self.limit * local.per_world
             });

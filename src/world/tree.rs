@@ -3,7 +3,8 @@
 #[cfg(test)]
 pub(super) mod tests;
 
-use super::{bvh, kdtree};
+use super::bvh::{self, Stored};
+use super::kdtree;
 use crate::math::Aabb;
 use crate::scene::Accelerator;
 use glam::DVec3;
@@ -83,17 +84,19 @@ impl Tree {
     }
 
     /// Offers to `leaf` every range of [`Tree::order`] that the ray may meet before `t_max`, near ones first, some items perhaps more than once.
-    /// `leaf` gives the distance beyond which nothing matters any more (so far); a negative one ends the traversal.
+    /// `leaf` gives the distance beyond which nothing matters any more (so far); a negative one ends the traversal. `stored` says where the items
+    /// stand, if anywhere, so that they are brought near ahead.
     #[inline(always)]
     pub fn traverse(
         &self,
         origin: &DVec3,
         direction: &DVec3,
         t_max: f64,
+        stored: Stored,
         leaf: impl FnMut(Range<usize>, f64) -> f64,
     ) {
         match self {
-            Tree::Bvh(tree) => tree.traverse(origin, direction, t_max, leaf),
+            Tree::Bvh(tree) => tree.traverse(origin, direction, t_max, stored, leaf),
             Tree::KdTree(tree) => tree.traverse(*origin, *direction, t_max, leaf),
         }
     }
@@ -105,10 +108,11 @@ impl Tree {
         origin: &DVec3,
         direction: &DVec3,
         t_max: f64,
+        stored: Stored,
         mut leaf: impl FnMut(Range<usize>) -> bool,
     ) {
         match self {
-            Tree::Bvh(tree) => tree.traverse_any(origin, direction, t_max, leaf),
+            Tree::Bvh(tree) => tree.traverse_any(origin, direction, t_max, stored, leaf),
             Tree::KdTree(tree) => tree
                 .traverse(*origin, *direction, t_max, |range, t_max| if leaf(range) { t_max } else { -1.0 }),
         }
@@ -118,7 +122,7 @@ impl Tree {
     /// to go on.
     pub fn traverse_all(&self, origin: DVec3, direction: DVec3, mut leaf: impl FnMut(Range<usize>) -> bool) {
         match self {
-            Tree::Bvh(tree) => tree.traverse_any(&origin, &direction, f64::MAX, leaf),
+            Tree::Bvh(tree) => tree.traverse_any(&origin, &direction, f64::MAX, Stored::NOWHERE, leaf),
             Tree::KdTree(tree) => {
                 let mut all = Vec::new();
                 tree.traverse(origin, direction, f64::MAX, |range, t_max| {

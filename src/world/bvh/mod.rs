@@ -13,8 +13,8 @@ pub(super) mod survey;
 mod tests;
 mod traverse;
 
-pub use traverse::clip;
-pub(in crate::world) use traverse::{Stored, fetch_entry};
+pub(in crate::world) use traverse::fetch_entry;
+pub use traverse::{Stored, clip};
 
 use crate::math::Aabb;
 use frame::Frame;

@@ -8,7 +8,8 @@ mod entry;
 mod fetch;
 mod wide;
 
-pub(in crate::world) use fetch::{Stored, fetch_entry};
+pub use fetch::Stored;
+pub(in crate::world) use fetch::fetch_entry;
 
 use super::{Child, Node, Tree, WIDTH};
 use crate::math::Aabb;
@@ -129,17 +130,18 @@ fn enter(node: &Node, fetch: impl Fn(Child), stack: &mut Waiting, (mut met, near
 impl Tree {
     /// Offers to `leaf` every range of [`Tree::order`] that the ray may meet before `t_max`, near ones first. `leaf` gives the
     /// distance beyond which nothing matters any more (so far); a negative one ends the traversal. The largest
-    /// coordinate of the direction is at least ½ and does not reach 2.
+    /// coordinate of the direction is at least ½ and does not reach 2. `stored` says where the items stand, if anywhere.
     #[inline(always)]
     pub fn traverse(
         &self,
         origin: &DVec3,
         direction: &DVec3,
         t_max: f64,
+        stored: Stored,
         mut leaf: impl FnMut(Range<usize>, f64) -> f64,
     ) {
         if let Some(t_max) = self.offer_loose(t_max, &mut leaf) {
-            wide::walk(self, [origin, direction], t_max, &mut leaf);
+            wide::walk(self, [origin, direction], t_max, stored, &mut leaf);
         }
     }
 
@@ -150,11 +152,12 @@ impl Tree {
         origin: &DVec3,
         direction: &DVec3,
         t_max: f64,
+        stored: Stored,
         mut leaf: impl FnMut(Range<usize>) -> bool,
     ) {
         let mut loose = |range, t_max| if leaf(range) { t_max } else { -1.0 };
         if let Some(t_max) = self.offer_loose(t_max, &mut loose) {
-            wide::walk_any(self, [origin, direction], t_max, &mut leaf);
+            wide::walk_any(self, [origin, direction], t_max, stored, &mut leaf);
         }
     }
 

@@ -8,14 +8,14 @@ const MANY: usize = 1 << 6;
 
 /// Where the items of leaves stand, for whom they stand in the tree's order.
 #[derive(Clone, Copy)]
-pub(in crate::world) struct Stored {
+pub struct Stored {
     start: *const i8,
     /// Bytes of an item.
     step: usize,
 }
 
 impl Stored {
-    /// Nowhere in particular.
+    /// Nowhere in particular: nodes alone are fetched.
     pub const NOWHERE: Stored = Stored { start: std::ptr::null(), step: 0 };
 
     /// In a row, of which each entry is so many of them.
@@ -31,7 +31,9 @@ impl Stored {
             return;
         }
         let node = nodes.as_ptr().wrapping_add(child.place()).cast();
-        let items = self.start.wrapping_add(child.place() * self.step);
+        // Not from no address at all, for which the processor would search long: the first node is near anyway.
+        let start = if self.step > 0 { self.start } else { nodes.as_ptr().cast() };
+        let items = start.wrapping_add(child.place() * self.step);
         // As many as a node takes.
         prefetch::<4>(if child.count() == 0 { node } else { items });
     }

@@ -14,6 +14,7 @@ pub(super) fn walk(
     tree: &Tree,
     ray: [&DVec3; 2],
     t_max: f64,
+    stored: Stored,
     leaf: &mut impl FnMut(Range<usize>, f64) -> f64,
 ) {
     #[cfg(target_arch = "x86_64")]
@@ -22,11 +23,11 @@ pub(super) fn walk(
         #[allow(unsafe_code, reason = "code for instructions that not every processor has")]
         return unsafe {
             let [o, d] = ray;
-            x86::walk(tree, o.x, o.y, o.z, d.x, d.y, d.z, t_max, leaf)
+            x86::walk(tree, o.x, o.y, o.z, d.x, d.y, d.z, t_max, stored, leaf)
         };
     }
     if let Some((entry, narrow)) = Entry::entered(tree, ray, t_max) {
-        super::walk(tree, entry, t_max, |node, limit| meets(&narrow, node, limit), Stored::NOWHERE, leaf);
+        super::walk(tree, entry, t_max, |node, limit| meets(&narrow, node, limit), stored, leaf);
     }
 }
 
@@ -36,6 +37,7 @@ pub(super) fn walk_any(
     tree: &Tree,
     ray: [&DVec3; 2],
     t_max: f64,
+    stored: Stored,
     leaf: &mut impl FnMut(Range<usize>) -> bool,
 ) {
     #[cfg(target_arch = "x86_64")]
@@ -44,11 +46,11 @@ pub(super) fn walk_any(
         #[allow(unsafe_code, reason = "code for instructions that not every processor has")]
         return unsafe {
             let [o, d] = ray;
-            x86::walk_any(tree, o.x, o.y, o.z, d.x, d.y, d.z, t_max, leaf)
+            x86::walk_any(tree, o.x, o.y, o.z, d.x, d.y, d.z, t_max, stored, leaf)
         };
     }
     if let Some((entry, narrow)) = Entry::entered(tree, ray, t_max) {
-        super::walk_any(tree, entry, t_max, |node, limit| meets(&narrow, node, limit), Stored::NOWHERE, leaf);
+        super::walk_any(tree, entry, t_max, |node, limit| meets(&narrow, node, limit), stored, leaf);
     }
 }
 
@@ -134,10 +136,11 @@ mod x86 {
         along_y: f64,
         along_z: f64,
         t_max: f64,
+        stored: Stored,
         leaf: &mut impl FnMut(Range<usize>, f64) -> f64,
     ) {
         let ray = [DVec3::new(x, y, z), DVec3::new(along_x, along_y, along_z)];
-        walk_avx2(tree, ray, t_max, Stored::NOWHERE, leaf);
+        walk_avx2(tree, ray, t_max, stored, leaf);
     }
 
     /// The same in no order.
@@ -152,10 +155,11 @@ mod x86 {
         along_y: f64,
         along_z: f64,
         t_max: f64,
+        stored: Stored,
         leaf: &mut impl FnMut(Range<usize>) -> bool,
     ) {
         let ray = [DVec3::new(x, y, z), DVec3::new(along_x, along_y, along_z)];
-        walk_any_avx2(tree, ray, t_max, Stored::NOWHERE, leaf);
+        walk_any_avx2(tree, ray, t_max, stored, leaf);
     }
 
     #[target_feature(enable = "avx2,bmi1,bmi2,fma")]
@@ -292,7 +296,9 @@ mod tests {
                 let meets = |node: &Node, limit| meets_fused(&narrow, node, limit);
                 super::super::walk(&tree, entry, 1e3, meets, Stored::NOWHERE, &mut to_plain);
             }
-            walk(&tree, [&origin, &direction], 1e3, &mut |range, t_max| noted(&mut by_wide, range, t_max));
+            walk(&tree, [&origin, &direction], 1e3, Stored::NOWHERE, &mut |range, t_max| {
+                noted(&mut by_wide, range, t_max)
+            });
             n_offered += by_plain.len();
             assert_eq!(by_wide, by_plain, "ray {i}");
         }
