@@ -36,6 +36,7 @@ impl<'c> Compiler<'c> {
                 Truth::Known(b) => Ok(Symbol::Known(Value::Bool(!b))),
                 Truth::Register(r) => Ok(Symbol::Bool(self.at(e.span).unary(Unary::Not, r))),
             },
+            ExprKind::Straight(straight) => self.expr(&straight.tree),
             ExprKind::Arithmetic(op, operands) => {
                 let (a, b) = (self.expr(&operands.0)?, self.expr(&operands.1)?);
                 self.arithmetic(*op, &a, &b, e.span)

@@ -1,14 +1,14 @@
 //! Calls.
 
+use super::plain::Operand;
 use super::slots::{Captured, Slot};
 use super::{Around, Call, Evaluator, Flow, Produced};
 use crate::diag::{Code, Diagnostic, Span};
-use crate::geometry::any_curve::AnyCurve;
 use crate::lang::builtins;
 use crate::lang::coerce::shown;
-use crate::lang::members::{self, Ask, Form, Member, curves};
+use crate::lang::members::{self, Ask, Form, Member};
 use crate::lang::resolve::program::{
-    Access, Argument, CallBuiltin, CallFunction, CallMethod, CallValue, FunctionBody, FunctionId,
+    Access, Argument, Body, CallBuiltin, CallFunction, CallMethod, CallValue, Expr, FunctionBody, FunctionId,
 };
 use crate::lang::table::{Arguments, Builtin, BuiltinBody, Context, Outcome, Reported};
 use crate::lang::value::Value;
@@ -34,10 +34,8 @@ impl<'p> Evaluator<'p> {
 
     pub(super) fn call_builtin(&mut self, call: &'p CallBuiltin, span: Span) -> Outcome {
         if let (BuiltinBody::Number2(f), [(0, a), (1, b)]) = (&call.builtin.body, &call.arguments[..]) {
-            return match self.number_of_two(call, *f, (a, b), span) {
-                Some(x) => Ok(Value::Number(x)),
-                None => self.spilled(),
-            };
+            let number = self.number_of_two(call, *f, (a, b), span);
+            return self.outcome(number);
         }
         let mut values = call.defaults.clone();
         let mut outcome = Ok(());
@@ -51,27 +49,45 @@ impl<'p> Evaluator<'p> {
         self.call_table(call.builtin, &values, &call.spans, span)
     }
 
-    /// A call of a declared function.
-    pub(super) fn call_function(&mut self, call: &'p CallFunction, span: Span) -> Outcome {
-        let captured = match call.callee {
-            Access::Global(_) => None,
-            Access::Sibling(_) => self.captured.clone(),
-            Access::Local(_) | Access::Captured(_) => match self.read(call.callee, span)? {
-                Value::Function(closure) => closure.captured.clone(),
-                other => return Err(self.not_callable(&other, span)),
-            },
+    /// The number that a call of a declared function gives; none where it is another value or failed, which then is in `spilled`.
+    #[inline(never)]
+    pub(super) fn number_of_function(&mut self, call: &'p CallFunction, span: Span) -> Option<f64> {
+        let captured = match self.captured_by(call.callee, span) {
+            Ok(captured) => captured,
+            Err(reported) => return self.spill(Err(reported)),
         };
         let base = self.open_frame(call.function);
         for (i, argument) in &call.arguments {
-            match self.expr(argument) {
-                Ok(value) => self.stack[base + *i as usize] = Slot::Value(value),
-                Err(reported) => {
-                    self.stack.truncate(base);
-                    return Err(reported);
-                }
+            if let Err(reported) = self.put(base + *i as usize, argument) {
+                self.stack.truncate(base);
+                return self.spill(Err(reported));
             }
         }
         self.enter(call.function, captured, base, span)
+    }
+
+    /// What a declared function captured.
+    #[inline]
+    fn captured_by(&mut self, callee: Access, span: Span) -> Outcome<Option<Rc<Captured>>> {
+        match callee {
+            Access::Global(_) => Ok(None),
+            Access::Sibling(_) => Ok(self.captured.clone()),
+            Access::Local(_) | Access::Captured(_) => match self.read(callee, span)? {
+                Value::Function(closure) => Ok(closure.captured.clone()),
+                other => Err(self.not_callable(&other, span)),
+            },
+        }
+    }
+
+    /// Puts an argument into its slot; a number without taking it through a [`Value`] elsewhere.
+    #[inline]
+    fn put(&mut self, place: usize, argument: &'p Expr) -> Outcome<()> {
+        if let Some(x) = self.number_at_once(argument) {
+            self.stack[place] = Slot::Value(Value::Number(x));
+            return Ok(());
+        }
+        self.stack[place] = Slot::Value(self.expr(argument)?);
+        Ok(())
     }
 
     /// Slots for a frame; its base.
@@ -82,55 +98,63 @@ impl<'p> Evaluator<'p> {
         base
     }
 
-    /// Runs a function whose arguments stand in its frame, and takes the frame down.
+    /// Runs a function whose arguments stand in its frame, and takes the frame down. The number that it gives; none where it is another
+    /// value or failed, which then is in `spilled`.
     fn enter(
         &mut self,
         function: FunctionId,
         captured: Option<Rc<Captured>>,
         base: usize,
         span: Span,
-    ) -> Outcome {
+    ) -> Option<f64> {
         if let Err(reported) = self.deeper(span) {
             self.stack.truncate(base);
-            return Err(reported);
+            return self.spill(Err(reported));
         }
         self.calls.push(Call { function, span, base });
         let outer_base = std::mem::replace(&mut self.base, base);
         let outer_captured = std::mem::replace(&mut self.captured, captured);
-        let value = self.run_function(function, span);
+        let number = self.run_function(function, span);
         self.base = outer_base;
         self.captured = outer_captured;
         self.calls.pop();
         self.stack.truncate(base);
-        value
+        number
     }
 
-    fn run_function(&mut self, function: FunctionId, span: Span) -> Outcome {
+    fn run_function(&mut self, function: FunctionId, span: Span) -> Option<f64> {
         let function = &self.program.functions[function.0 as usize];
         for (i, parameter) in function.parameters.iter().enumerate() {
             let slot = self.base + i;
             if let (Some(default), Slot::Unset) = (&parameter.default, &self.stack[slot]) {
-                self.stack[slot] = Slot::Value(self.expr(default)?);
+                match self.expr(default) {
+                    Ok(value) => self.stack[slot] = Slot::Value(value),
+                    Err(reported) => return self.spill(Err(reported)),
+                }
             }
         }
         match &function.body {
-            FunctionBody::Expr(value) => self.expr(value),
+            FunctionBody::Expr(value) => self.number(value),
             FunctionBody::Items(body) => {
-                let mut out = Produced::new(Around::Braces);
-                match self.items(body, &mut out) {
-                    Flow::On => self.body_value(out, span),
-                    Flow::Return => match self.returned.take() {
-                        Some(value) => value,
-                        None => self.body_value(out, span),
-                    },
-                }
+                let value = self.run_items(body, span);
+                self.spill(value)
             }
         }
     }
 
+    fn run_items(&mut self, body: &'p Body, span: Span) -> Outcome {
+        let mut out = Produced::new(Around::Braces);
+        match (self.items(body, &mut out), self.returned.take()) {
+            (Flow::Return, Some(value)) => value,
+            (Flow::On | Flow::Return, _) => self.body_value(out, span),
+        }
+    }
+
     pub(super) fn call_value(&mut self, call: &'p CallValue, span: Span) -> Outcome {
-        if let Some(point) = self.point_of_call(call, span) {
-            return self.outcome_of(point);
+        match self.point_of_call(call) {
+            Some(Operand::Number(x)) => return Ok(Value::Number(x)),
+            Some(Operand::Vector(v)) => return Ok(Value::Vector3(v)),
+            None => {}
         }
         let callee = self.expr(&call.callee);
         if let Ok(value) = &callee
@@ -148,24 +172,12 @@ impl<'p> Evaluator<'p> {
                     self.stack.truncate(base);
                     return Err(reported);
                 }
-                self.enter(closure.function, closure.captured.clone(), base, span)
+                let number = self.enter(closure.function, closure.captured.clone(), base, span);
+                self.outcome(number)
             }
             Value::Builtin(builtin) => self.call_builtin_value(builtin, &call.arguments, arguments, span),
             other => Err(self.not_callable(other, call.callee.span)),
         }
-    }
-
-    /// A curve at what its call was given.
-    pub(super) fn call_curve(&mut self, curve: &AnyCurve, given: Value, place: Span, span: Span) -> Outcome {
-        if let Value::Number(t) = given
-            && let Ok(point) = curves::point_at(curve, t)
-        {
-            return Ok(point);
-        }
-        let value = Value::Curve(curve.clone());
-        let member = members::call_of(&value).expect("curves are called");
-        let arguments = Arguments { values: &[given], spans: &[place], span };
-        (member.body)(self, &Ask { member, value: &value, arguments: &arguments })
     }
 
     fn argument_values(&mut self, arguments: &'p [Argument]) -> Outcome<Vec<Value>> {
@@ -321,7 +333,8 @@ impl<'p> Evaluator<'p> {
                     self.stack.truncate(base);
                     return Err(reported);
                 }
-                self.enter(closure.function, closure.captured.clone(), base, at)
+                let number = self.enter(closure.function, closure.captured.clone(), base, at);
+                self.outcome(number)
             }
             Value::Builtin(builtin) => {
                 self.deeper(at)?;

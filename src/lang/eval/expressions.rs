@@ -19,11 +19,18 @@ impl<'p> Evaluator<'p> {
     pub(super) fn expr(&mut self, e: &'p Expr) -> Outcome {
         match &e.kind {
             ExprKind::Number(x) => Ok(Value::Number(*x)),
-            ExprKind::Arithmetic(..) | ExprKind::CallNumber(..) | ExprKind::Negate(_) => match self.number(e)
-            {
-                Some(x) => Ok(Value::Number(x)),
-                None => self.spilled(),
+            ExprKind::Name(access) => match self.slot_of(*access) {
+                Some(Slot::Value(Value::Number(x))) => Ok(Value::Number(*x)),
+                _ => self.read(*access, e.span),
             },
+            ExprKind::Straight(_)
+            | ExprKind::Arithmetic(..)
+            | ExprKind::CallNumber(..)
+            | ExprKind::CallFunction(_)
+            | ExprKind::Negate(_) => {
+                let number = self.number(e);
+                self.outcome(number)
+            }
             _ => self.general(e),
         }
     }
@@ -31,13 +38,14 @@ impl<'p> Evaluator<'p> {
     /// The value of an expression that [`Evaluator::number`] has no fast path for.
     pub(super) fn general(&mut self, e: &'p Expr) -> Outcome {
         match &e.kind {
-            ExprKind::Name(access) => self.read(*access, e.span),
             ExprKind::Compare(op, operands) => self.compare(*op, operands, e.span),
             ExprKind::Number(_)
+            | ExprKind::Name(_)
+            | ExprKind::Straight(_)
             | ExprKind::Arithmetic(..)
             | ExprKind::CallNumber(..)
+            | ExprKind::CallFunction(_)
             | ExprKind::Negate(_) => self.expr(e),
-            ExprKind::CallFunction(call) => self.call_function(call, e.span),
             ExprKind::CallBuiltin(call) => self.call_builtin(call, e.span),
             ExprKind::Component(i, base) => self.component(*i, base, e.span),
             ExprKind::Constant(value) => Ok((**value).clone()),
@@ -72,7 +80,7 @@ impl<'p> Evaluator<'p> {
     }
 
     /// A name's value.
-    #[inline]
+    #[inline(never)]
     pub(super) fn read(&mut self, access: Access, span: Span) -> Outcome {
         let slot = match access {
             Access::Local(slot) => &self.stack[self.base + slot as usize],
@@ -108,14 +116,10 @@ impl<'p> Evaluator<'p> {
 
     #[inline]
     fn compare(&mut self, op: Comparison, operands: &'p (Expr, Expr), span: Span) -> Outcome {
-        let a = match self.number(&operands.0) {
-            Some(x) => Ok(Value::Number(x)),
-            None => self.spilled(),
-        };
-        let b = match self.number(&operands.1) {
-            Some(y) => Ok(Value::Number(y)),
-            None => self.spilled(),
-        };
+        let x = self.number(&operands.0);
+        let a = self.outcome(x);
+        let y = self.number(&operands.1);
+        let b = self.outcome(y);
         let (a, b) = (a?, b?);
         if let (&Value::Number(x), &Value::Number(y)) = (&a, &b) {
             return Ok(Value::Bool(operators::compare(op, x, y)));

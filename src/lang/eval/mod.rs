@@ -19,6 +19,7 @@ pub mod operators;
 mod plain;
 mod report;
 pub mod slots;
+mod straight;
 mod undo;
 mod update;
 
@@ -38,6 +39,7 @@ use glam::DVec3;
 use guards::Guards;
 use nested::Nested;
 use slots::{Captured, Slot};
+use std::cell::Cell;
 use std::collections::HashMap;
 use std::rc::Rc;
 use std::sync::atomic::AtomicBool;
@@ -206,6 +208,8 @@ struct Evaluator<'p> {
     spilled: Outcome,
     /// A vector on the fast path of vectors.
     vector: DVec3,
+    /// Of the line that is running.
+    registers: straight::Registers,
     /// What the last number of a member may be off by, where it said so.
     estimate: Option<f64>,
     top: Top,
@@ -232,6 +236,7 @@ impl<'p> Evaluator<'p> {
             returned: None,
             spilled: Err(Reported),
             vector: DVec3::ZERO,
+            registers: [const { Cell::new(0.0) }; _],
             estimate: None,
             top: Top::default(),
             guards: Guards::new(&run.limits, run.stack),

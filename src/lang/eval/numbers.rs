@@ -20,6 +20,7 @@ impl<'p> Evaluator<'p> {
                 Some(Slot::Value(Value::Number(x))) => Some(*x),
                 _ => self.other(e),
             },
+            ExprKind::Straight(straight) => self.number_of_straight(straight),
             _ => self.number_of_compound(e),
         }
     }
@@ -31,6 +32,7 @@ impl<'p> Evaluator<'p> {
             ExprKind::Arithmetic(op, operands) => self.number_of_arithmetic(e, *op, operands),
             ExprKind::CallNumber(builtin, f, argument) => self.number_of_call(e, builtin, *f, argument),
             ExprKind::CallBuiltin(call) => self.number_of_builtin(e, call),
+            ExprKind::CallFunction(call) => self.number_of_function(call, e.span),
             ExprKind::Negate(operand) => self.number_of_negated(e, operand),
             ExprKind::Component(i, base) => self.number_of_component(e, *i, base),
             _ => self.other(e),
@@ -226,6 +228,15 @@ impl<'p> Evaluator<'p> {
         }
         self.spilled = value;
         None
+    }
+
+    /// A number, or what was set aside in its place.
+    #[inline]
+    pub(super) fn outcome(&mut self, number: Option<f64>) -> Outcome {
+        match number {
+            Some(x) => Ok(Value::Number(x)),
+            None => self.spilled(),
+        }
     }
 
     /// What was set aside.

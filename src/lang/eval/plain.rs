@@ -6,7 +6,7 @@ use super::operators;
 use super::slots::Slot;
 use crate::diag::Span;
 use crate::geometry::any_curve::AnyCurve;
-use crate::lang::resolve::program::{Access, Arithmetic, CallValue, Expr, ExprKind};
+use crate::lang::resolve::program::{Access, Argument, Arithmetic, CallValue, Expr, ExprKind};
 use crate::lang::table::Outcome;
 use crate::lang::value::Value;
 use glam::DVec3;
@@ -53,6 +53,10 @@ impl<'p> Evaluator<'p> {
         match &e.kind {
             ExprKind::Arithmetic(op, operands) => self.plain_of_arithmetic(e, *op, operands),
             ExprKind::CallValue(call) => self.plain_of_call(e, call),
+            ExprKind::Straight(straight) => match self.line(&straight.line) {
+                Some(x) => Plain::Number(x),
+                None => self.plain_of_compound(&straight.tree),
+            },
             _ => self.plain_of_other(e),
         }
     }
@@ -65,9 +69,19 @@ impl<'p> Evaluator<'p> {
 
     #[inline(never)]
     fn plain_of_call(&mut self, e: &'p Expr, call: &'p CallValue) -> Plain {
-        match self.point_of_call(call, e.span) {
-            Some(point) => point,
+        match self.point_of_call(call) {
+            Some(point) => self.plain_of_operand(point),
             None => self.plain_of_other(e),
+        }
+    }
+
+    fn plain_of_operand(&mut self, operand: Operand) -> Plain {
+        match operand {
+            Operand::Number(x) => Plain::Number(x),
+            Operand::Vector(v) => {
+                self.vector = v;
+                Plain::Vector
+            }
         }
     }
 
@@ -169,43 +183,21 @@ impl<'p> Evaluator<'p> {
     }
 
     /// A named curve called with a number: the commonest call of a value in a loop, made without a copy of the curve. None where it is
-    /// another call, of which nothing was evaluated then.
+    /// another call, or must be made with more care; nothing has been said or changed then.
     #[inline(always)]
-    pub(super) fn point_of_call(&mut self, call: &'p CallValue, span: Span) -> Option<Plain> {
-        let (ExprKind::Name(access), Some(argument)) = (&call.callee.kind, call.steady_argument()) else {
+    pub(super) fn point_of_call(&self, call: &CallValue) -> Option<Operand> {
+        let (ExprKind::Name(access), [Argument { name: None, value }]) =
+            (&call.callee.kind, &call.arguments[..])
+        else {
             return None;
         };
-        let Some(Slot::Value(Value::Curve(_))) = self.slot_of(*access) else { return None };
-        let given = self.number(argument);
-        // Still the same one, as the argument could not assign to it.
         let Some(Slot::Value(Value::Curve(curve))) = self.slot_of(*access) else { return None };
-        match (given, curve) {
-            (Some(t), AnyCurve::Space(c)) => {
-                if let Some(point) = c.at_inside(t) {
-                    self.vector = point;
-                    return Some(Plain::Vector);
-                }
-            }
-            (Some(t), AnyCurve::Numbers(c)) => {
-                if let Some(point) = c.at_inside(t) {
-                    return Some(Plain::Number(point));
-                }
-            }
-            (Some(_), AnyCurve::Plane(_)) | (None, _) => {}
+        let t = self.number_at_once(value)?;
+        match curve {
+            AnyCurve::Space(c) => c.at_inside(t).map(Operand::Vector),
+            AnyCurve::Numbers(c) => c.at_inside(t).map(Operand::Number),
+            AnyCurve::Plane(_) => None,
         }
-        Some(self.point_of_any(*access, given, argument.span, span))
-    }
-
-    #[inline(never)]
-    fn point_of_any(&mut self, curve: Access, given: Option<f64>, place: Span, span: Span) -> Plain {
-        let Some(Slot::Value(Value::Curve(curve))) = self.slot_of(curve) else {
-            unreachable!("a steady argument leaves the curve where it is")
-        };
-        let curve = &curve.clone();
-        let given = given.map_or_else(|| self.spilled(), |t| Ok(Value::Number(t)));
-        let point = given.and_then(|given| self.call_curve(curve, given, place, span));
-        let number = self.spill(point);
-        self.plain_of(number)
     }
 }
 

@@ -12,7 +12,34 @@ use glam::DVec3;
 
 impl<'p> Evaluator<'p> {
     /// Gives a variable the value of an expression; poison where that failed.
+    #[inline(never)]
     pub(super) fn assign(&mut self, access: Access, value: &'p Expr) -> Outcome<()> {
+        match &value.kind {
+            ExprKind::Straight(straight) => match self.line(&straight.line) {
+                Some(x) => self.assign_plain(access, Plain::Number(x)),
+                None => self.assign_other(access, &straight.tree),
+            },
+            ExprKind::Arithmetic(op, operands) if self.add_point(access, *op, operands) => Ok(()),
+            _ => self.assign_other(access, value),
+        }
+    }
+
+    /// `s = s op curve(t)`, where both are vectors; whether it was that. Nothing has been said or changed where it was not.
+    #[inline(always)]
+    fn add_point(&mut self, access: Access, op: Arithmetic, (left, right): &'p (Expr, Expr)) -> bool {
+        if let (ExprKind::Name(name), ExprKind::CallValue(call)) = (&left.kind, &right.kind)
+            && *name == access
+            && let Access::Local(_) | Access::Global(_) = access
+            && let Some(Operand::Vector(v)) = self.point_of_call(call)
+            && let Slot::Value(Value::Vector3(u)) = self.slot(access)
+        {
+            return set(u, operators::vector3(op, *u, v));
+        }
+        false
+    }
+
+    #[inline(never)]
+    fn assign_other(&mut self, access: Access, value: &'p Expr) -> Outcome<()> {
         if let ExprKind::Arithmetic(op, operands) = &value.kind
             && let ExprKind::Name(left) = operands.0.kind
             && left == access
@@ -38,11 +65,9 @@ impl<'p> Evaluator<'p> {
         let b = self.plain(right);
         if let Plain::Vector = b {
             let joined = operators::vector3(op, u, self.vector);
-            if is_finite(joined)
-                && let Slot::Value(Value::Vector3(old)) = self.slot(access)
+            if let Slot::Value(Value::Vector3(old)) = self.slot(access)
+                && set(old, joined)
             {
-                // One by one: a copy of all three at once would wait until each has been stored where it was made.
-                (old.x, old.y, old.z) = (joined.x, joined.y, joined.z);
                 return Ok(());
             }
         }
@@ -85,8 +110,13 @@ impl<'p> Evaluator<'p> {
     }
 }
 
-/// Whether no component is infinite or NaN: 0 times those is NaN.
+/// Gives a vector another value, where that is finite; whether it is. 0 times what is not is NaN.
 #[inline(always)]
-fn is_finite(v: DVec3) -> bool {
-    v.dot(DVec3::ZERO) == 0.0
+fn set(old: &mut DVec3, new: DVec3) -> bool {
+    let is_finite = new.dot(DVec3::ZERO) == 0.0;
+    if is_finite {
+        // One by one: a copy of all three at once would wait until each has been stored where it was made.
+        (old.x, old.y, old.z) = (new.x, new.y, new.z);
+    }
+    is_finite
 }

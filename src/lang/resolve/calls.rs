@@ -4,7 +4,7 @@ use super::program::{
     Argument, CallBuiltin, CallFunction, CallMethod, CallValue, Expr, ExprKind, FunctionId,
 };
 use super::scope::Declared;
-use super::{Access, Meaning, Resolver};
+use super::{Access, Meaning, Resolver, straight};
 use crate::diag::{Code, Diagnostic, Span};
 use crate::lang::builtins;
 use crate::lang::members;
@@ -48,7 +48,7 @@ impl<'a> Resolver<'a> {
                 self.call_value(callee, call)
             }
         };
-        Expr { kind, span }
+        straight::beside(Expr { kind, span })
     }
 
     fn call_name(&mut self, name: &'a str, call: &'a ast::Call, span: Span) -> ExprKind {
@@ -125,8 +125,7 @@ impl<'a> Resolver<'a> {
 
     fn call_value(&mut self, callee: Expr, call: &'a ast::Call) -> ExprKind {
         let arguments = self.arguments(call);
-        let steady = arguments.iter().all(|argument| argument.value.is_steady());
-        ExprKind::CallValue(Box::new(CallValue { callee, arguments, steady }))
+        ExprKind::CallValue(Box::new(CallValue { callee, arguments }))
     }
 
     fn call_function(&mut self, access: Access, id: FunctionId, call: &'a ast::Call) -> ExprKind {

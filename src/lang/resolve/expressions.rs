@@ -4,7 +4,7 @@ use super::program::{
     Arithmetic, Comparison, Comprehension, Expr, ExprKind, FunctionBody, Range, TextPart, With,
 };
 use super::scope::{Declared, Owner};
-use super::{Meaning, Place, Resolver};
+use super::{Meaning, Place, Resolver, straight};
 use crate::diag::{Code, Diagnostic, Span};
 use crate::lang::kinds;
 use crate::lang::value::{self, Value};
@@ -49,7 +49,7 @@ impl<'a> Resolver<'a> {
             },
             ast::ExprKind::Bad => ExprKind::Poison,
         };
-        Expr { kind, span: e.span }
+        straight::beside(Expr { kind, span: e.span })
     }
 
     fn exprs(&mut self, list: &'a [ast::Expr]) -> Box<[Expr]> {

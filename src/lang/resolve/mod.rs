@@ -11,6 +11,7 @@ pub mod known;
 pub mod load;
 pub mod program;
 mod scope;
+pub mod straight;
 mod words;
 
 use super::builtins;

@@ -1,8 +1,9 @@
 //! The resolved tree: what evaluation walks. Every name is a slot, a constant or a builtin; every kind is its entry of the
 //! table. Knows nothing of values beyond constants.
 
+use super::straight::Straight;
 use crate::diag::Span;
-use crate::lang::table::{self, Builtin, BuiltinBody, Kind};
+use crate::lang::table::{self, Builtin, Kind};
 use crate::lang::value::Value;
 use std::rc::Rc;
 
@@ -240,25 +241,6 @@ pub struct Expr {
     pub span: Span,
 }
 
-impl Expr {
-    /// Whether its evaluation calls nothing that the scene declares, and so can change no variable. Looks at what arithmetic is made of; of
-    /// anything else it says no.
-    pub fn is_steady(&self) -> bool {
-        match &self.kind {
-            ExprKind::Number(_) | ExprKind::Constant(_) | ExprKind::Name(_) => true,
-            ExprKind::Arithmetic(_, operands) => operands.0.is_steady() && operands.1.is_steady(),
-            ExprKind::CallNumber(_, _, operand)
-            | ExprKind::Negate(operand)
-            | ExprKind::Component(_, operand) => operand.is_steady(),
-            ExprKind::CallBuiltin(call) => {
-                matches!(call.builtin.body, BuiltinBody::Number2(_))
-                    && call.arguments.iter().all(|(_, argument)| argument.is_steady())
-            }
-            _ => false,
-        }
-    }
-}
-
 /// The forms of an expression.
 #[derive(Debug)]
 pub enum ExprKind {
@@ -280,6 +262,8 @@ pub enum ExprKind {
     Negate(Box<Expr>),
     /// `!e`.
     Not(Box<Expr>),
+    /// Arithmetic on numbers, in a row.
+    Straight(Box<Straight>),
     /// `a + b` and the like.
     Arithmetic(Arithmetic, Box<(Expr, Expr)>),
     /// `a < b` and the like.
@@ -446,19 +430,6 @@ pub struct CallValue {
     pub callee: Expr,
     /// Arguments in the order written.
     pub arguments: Vec<Argument>,
-    /// Whether the arguments can change no variable.
-    pub steady: bool,
-}
-
-impl CallValue {
-    /// The one argument of a call whose evaluation can change no variable, what is called among them.
-    #[inline]
-    pub fn steady_argument(&self) -> Option<&Expr> {
-        match &self.arguments[..] {
-            [Argument { name: None, value }] if self.steady => Some(value),
-            _ => None,
-        }
-    }
 }
 
 /// A call of a method.
