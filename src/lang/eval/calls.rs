@@ -1,12 +1,11 @@
 //! Calls.
 
-use super::plain::Operand;
 use super::slots::{Captured, Slot};
 use super::{Around, Call, Evaluator, Flow, Produced};
 use crate::diag::{Code, Diagnostic, Span};
 use crate::lang::builtins;
 use crate::lang::coerce::shown;
-use crate::lang::members::{self, Ask, Form, Member};
+use crate::lang::members::{self, Ask, Form, Member, curves};
 use crate::lang::resolve::program::{
     Access, Argument, Body, CallBuiltin, CallFunction, CallMethod, CallValue, Expr, FunctionBody, FunctionId,
 };
@@ -52,6 +51,9 @@ impl<'p> Evaluator<'p> {
     /// The number that a call of a declared function gives; none where it is another value or failed, which then is in `spilled`.
     #[inline(never)]
     pub(super) fn number_of_function(&mut self, call: &'p CallFunction, span: Span) -> Option<f64> {
+        if let Some(x) = self.number_of_short_call(call) {
+            return Some(x);
+        }
         let captured = match self.captured_by(call.callee, span) {
             Ok(captured) => captured,
             Err(reported) => return self.spill(Err(reported)),
@@ -151,10 +153,11 @@ impl<'p> Evaluator<'p> {
     }
 
     pub(super) fn call_value(&mut self, call: &'p CallValue, span: Span) -> Outcome {
-        match self.point_of_call(call) {
-            Some(Operand::Number(x)) => return Ok(Value::Number(x)),
-            Some(Operand::Vector(v)) => return Ok(Value::Vector3(v)),
-            None => {}
+        if let Some((curve, t)) = self.curve_of_call(call)
+            && let Some(t) = self.number_at_once(t)
+            && let Ok(point) = curves::point_at(curve, t)
+        {
+            return Ok(point);
         }
         let callee = self.expr(&call.callee);
         if let Ok(value) = &callee

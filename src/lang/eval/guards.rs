@@ -113,6 +113,21 @@ impl Evaluator<'_> {
         self.turn(span)
     }
 
+    /// Counts a call that itself calls nothing; false, and not counted, where something is to be said or looked at.
+    #[inline]
+    pub(super) fn deeper_at_once(&mut self) -> bool {
+        if self.guards.leaving || self.calls.len() >= self.run.limits.calls {
+            return false;
+        }
+        match self.guards.turns.checked_sub(1) {
+            Some(left) if left % TURNS_BETWEEN_LOOKS != 0 => {
+                self.guards.turns = left;
+                true
+            }
+            _ => false,
+        }
+    }
+
     #[cold]
     fn too_deep(&mut self, span: Span) -> Reported {
         self.guards.leaving = true;

@@ -53,7 +53,7 @@ impl<'p> Evaluator<'p> {
         match &e.kind {
             ExprKind::Arithmetic(op, operands) => self.plain_of_arithmetic(e, *op, operands),
             ExprKind::CallValue(call) => self.plain_of_call(e, call),
-            ExprKind::Straight(straight) => match self.line(&straight.line) {
+            ExprKind::Straight(straight) => match self.straight(straight) {
                 Some(x) => Plain::Number(x),
                 None => self.plain_of_compound(&straight.tree),
             },
@@ -182,22 +182,27 @@ impl<'p> Evaluator<'p> {
         }
     }
 
-    /// A named curve called with a number: the commonest call of a value in a loop, made without a copy of the curve. None where it is
-    /// another call, or must be made with more care; nothing has been said or changed then.
+    /// A point of a named curve, called with a number: the commonest call of a value in a loop, made without a copy of the curve. None
+    /// where it is another call, or must be made with more care; nothing has been said or changed then.
     #[inline(always)]
     pub(super) fn point_of_call(&self, call: &CallValue) -> Option<Operand> {
+        match self.curve_of_call(call)? {
+            (AnyCurve::Space(c), t) => c.at_inside(self.number_at_once(t)?).map(Operand::Vector),
+            (AnyCurve::Numbers(c), t) => c.at_inside(self.number_at_once(t)?).map(Operand::Number),
+            (AnyCurve::Plane(_), _) => None,
+        }
+    }
+
+    /// A named curve, and what it is called with.
+    #[inline(always)]
+    pub(super) fn curve_of_call<'c>(&self, call: &'c CallValue) -> Option<(&AnyCurve, &'c Expr)> {
         let (ExprKind::Name(access), [Argument { name: None, value }]) =
             (&call.callee.kind, &call.arguments[..])
         else {
             return None;
         };
         let Some(Slot::Value(Value::Curve(curve))) = self.slot_of(*access) else { return None };
-        let t = self.number_at_once(value)?;
-        match curve {
-            AnyCurve::Space(c) => c.at_inside(t).map(Operand::Vector),
-            AnyCurve::Numbers(c) => c.at_inside(t).map(Operand::Number),
-            AnyCurve::Plane(_) => None,
-        }
+        Some((curve, value))
     }
 }
 

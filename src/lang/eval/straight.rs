@@ -4,7 +4,7 @@
 use super::Evaluator;
 use super::operators;
 use super::slots::Slot;
-use crate::lang::resolve::program::{Arithmetic, Expr, ExprKind};
+use crate::lang::resolve::program::{Access, Arithmetic, CallFunction, Expr, ExprKind, FunctionBody};
 use crate::lang::resolve::straight::{Line, Register, SOURCES, STEPS, Source, Step, Straight};
 use crate::lang::value::Value;
 use std::cell::Cell;
@@ -14,11 +14,18 @@ pub(super) type Registers = [Cell<f64>; 1 << Register::BITS];
 
 const _: () = assert!(SOURCES + STEPS <= 1 << Register::BITS);
 
+/// How many times a line that failed is passed over: often enough that trying costs arithmetic on vectors nothing to speak of, and seldom
+/// enough that a function that takes both soon runs as a line again.
+const PASSES: u8 = 100;
+
+/// Arguments of a call without slots, at most.
+const GIVEN: usize = 8;
+
 impl<'p> Evaluator<'p> {
     /// The number of arithmetic; none where it is another value or failed, which then is in `spilled`.
     #[inline]
     pub(super) fn number_of_straight(&mut self, straight: &'p Straight) -> Option<f64> {
-        match self.line(&straight.line) {
+        match self.straight(straight) {
             Some(x) => Some(x),
             None => self.number(&straight.tree),
         }
@@ -30,16 +37,61 @@ impl<'p> Evaluator<'p> {
         match &e.kind {
             ExprKind::Number(x) => Some(*x),
             ExprKind::Name(access) => self.source(Source::Name(*access)),
-            ExprKind::Straight(straight) => self.line(&straight.line),
+            ExprKind::Straight(straight) => self.straight(straight),
             _ => None,
         }
     }
 
-    /// The number at the end of a line, where all on it are finite.
+    /// The number of a call whose function is a line of its arguments; it needs no slots. What gives none may yet give one by another way:
+    /// nothing has been said or changed then.
+    #[inline]
+    pub(super) fn number_of_short_call(&mut self, call: &CallFunction) -> Option<f64> {
+        let function = &self.program.functions[call.function.0 as usize];
+        let FunctionBody::Expr(Expr { kind: ExprKind::Straight(straight), .. }) = &function.body else {
+            return None;
+        };
+        if !matches!(call.callee, Access::Global(_)) || call.arguments.len() != function.parameters.len() {
+            return None;
+        }
+        let mut given = [0.0; GIVEN];
+        for (i, argument) in &call.arguments {
+            *given.get_mut(*i as usize)? = self.number_at_once(argument)?;
+        }
+        let x = self.line_from(&straight.line, Some(&given))?;
+        self.deeper_at_once().then_some(x)
+    }
+
+    /// The number of arithmetic, where all in it are finite and the line is not passed over.
+    #[inline(always)]
+    pub(super) fn straight(&self, straight: &Straight) -> Option<f64> {
+        match straight.passes.get() {
+            0 => self.line(straight),
+            passes => {
+                straight.passes.set(passes - 1);
+                None
+            }
+        }
+    }
+
     #[inline(never)]
-    pub(super) fn line(&self, line: &Line) -> Option<f64> {
+    fn line(&self, straight: &Straight) -> Option<f64> {
+        let number = self.line_from(&straight.line, None);
+        if number.is_none() {
+            straight.passes.set(PASSES);
+        }
+        number
+    }
+
+    /// The number at the end of a line, where all on it are finite. Locals may be numbers that were given.
+    #[inline(always)]
+    fn line_from(&self, line: &Line, given: Option<&[f64; GIVEN]>) -> Option<f64> {
         for (i, source) in line.sources.iter().enumerate() {
-            self.registers[i % SOURCES].set(self.source(*source)?);
+            let number = match (*source, given) {
+                (Source::Name(Access::Local(slot)), Some(given)) => given.get(slot as usize).copied(),
+                (Source::Component(Access::Local(_), _), Some(_)) => None,
+                (source, _) => self.source(source),
+            };
+            self.registers[i % SOURCES].set(number?);
         }
         run(&line.steps, &self.registers).and_then(finite)
     }

@@ -5,6 +5,7 @@ use super::Evaluator;
 use super::operators;
 use super::plain::{Operand, Plain};
 use super::slots::Slot;
+use crate::geometry::any_curve::AnyCurve;
 use crate::lang::resolve::program::{Access, Arithmetic, Expr, ExprKind};
 use crate::lang::table::Outcome;
 use crate::lang::value::Value;
@@ -15,7 +16,7 @@ impl<'p> Evaluator<'p> {
     #[inline(never)]
     pub(super) fn assign(&mut self, access: Access, value: &'p Expr) -> Outcome<()> {
         match &value.kind {
-            ExprKind::Straight(straight) => match self.line(&straight.line) {
+            ExprKind::Straight(straight) => match self.straight(straight) {
                 Some(x) => self.assign_plain(access, Plain::Number(x)),
                 None => self.assign_other(access, &straight.tree),
             },
@@ -24,16 +25,22 @@ impl<'p> Evaluator<'p> {
         }
     }
 
-    /// `s = s op curve(t)`, where both are vectors; whether it was that. Nothing has been said or changed where it was not.
+    /// `s = s ± curve(t)`, where both are vectors; whether it was that. Nothing has been said or changed where it was not.
     #[inline(always)]
     fn add_point(&mut self, access: Access, op: Arithmetic, (left, right): &'p (Expr, Expr)) -> bool {
         if let (ExprKind::Name(name), ExprKind::CallValue(call)) = (&left.kind, &right.kind)
             && *name == access
             && let Access::Local(_) | Access::Global(_) = access
-            && let Some(Operand::Vector(v)) = self.point_of_call(call)
+            && let Some((AnyCurve::Space(curve), t)) = self.curve_of_call(call)
+            && let Some(t) = self.number_at_once(t)
+            && let Some(v) = curve.at_inside(t)
             && let Slot::Value(Value::Vector3(u)) = self.slot(access)
         {
-            return set(u, operators::vector3(op, *u, v));
+            return match op {
+                Arithmetic::Add => set(u, u.x + v.x, u.y + v.y, u.z + v.z),
+                Arithmetic::Subtract => set(u, u.x - v.x, u.y - v.y, u.z - v.z),
+                _ => false,
+            };
         }
         false
     }
@@ -53,7 +60,7 @@ impl<'p> Evaluator<'p> {
     }
 
     /// `variable = whole`, where whole is `u op right` and u what the variable holds.
-    #[inline(always)]
+    #[inline(never)]
     fn update(
         &mut self,
         access: Access,
@@ -66,7 +73,7 @@ impl<'p> Evaluator<'p> {
         if let Plain::Vector = b {
             let joined = operators::vector3(op, u, self.vector);
             if let Slot::Value(Value::Vector3(old)) = self.slot(access)
-                && set(old, joined)
+                && set(old, joined.x, joined.y, joined.z)
             {
                 return Ok(());
             }
@@ -110,13 +117,13 @@ impl<'p> Evaluator<'p> {
     }
 }
 
-/// Gives a vector another value, where that is finite; whether it is. 0 times what is not is NaN.
+/// Gives a vector other components, where they are finite; whether they are. 0 times what is not is NaN. They go from hand to hand one by
+/// one: a vector that is stored in parts and read as a whole waits until all of it has come to memory.
 #[inline(always)]
-fn set(old: &mut DVec3, new: DVec3) -> bool {
-    let is_finite = new.dot(DVec3::ZERO) == 0.0;
+fn set(old: &mut DVec3, x: f64, y: f64, z: f64) -> bool {
+    let is_finite = x * 0.0 + y * 0.0 + z * 0.0 == 0.0;
     if is_finite {
-        // One by one: a copy of all three at once would wait until each has been stored where it was made.
-        (old.x, old.y, old.z) = (new.x, new.y, new.z);
+        (old.x, old.y, old.z) = (x, y, z);
     }
     is_finite
 }

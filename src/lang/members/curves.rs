@@ -8,6 +8,7 @@ use super::{Ask, Family, Form, Member};
 use crate::geometry::any_curve::AnyCurve;
 use crate::lang::table::Parameter;
 use crate::lang::value::Value;
+pub use numeric::point_at;
 use numeric::{numeric, sampled};
 
 const T: &[Parameter] = &[Parameter::new("t", "a number")];

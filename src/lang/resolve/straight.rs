@@ -3,6 +3,7 @@
 
 use super::program::{Access, Arithmetic, Expr, ExprKind};
 use crate::lang::table::BuiltinBody;
+use std::cell::Cell;
 
 /// Registers that the sources of a line may take: the first. Those of its steps follow.
 pub const SOURCES: usize = 32;
@@ -15,6 +16,8 @@ pub const STEPS: usize = 64;
 pub struct Straight {
     /// Its steps.
     pub line: Line,
+    /// How many times more the line is passed over, because it failed: names that hold vectors will mostly do so again.
+    pub passes: Cell<u8>,
     /// As it was written: what is computed instead where a source holds no number, or something has no finite value.
     pub tree: Expr,
 }
@@ -74,7 +77,7 @@ pub(super) fn beside(tree: Expr) -> Expr {
     match compound(&tree.kind).filter(Line::fits) {
         Some(line) => {
             let span = tree.span;
-            Expr { kind: ExprKind::Straight(Box::new(Straight { line, tree })), span }
+            Expr { kind: ExprKind::Straight(Box::new(Straight { line, passes: Cell::new(0), tree })), span }
         }
         None => tree,
     }

@@ -125,7 +125,7 @@ pub fn at(ctx: &mut dyn Context, ask: &Ask<'_>) -> Outcome {
 
 /// The point at t as a value: what loops call by the million.
 #[inline]
-fn point_at(curve: &AnyCurve, t: f64) -> Result<Value, CurveError> {
+pub fn point_at(curve: &AnyCurve, t: f64) -> Result<Value, CurveError> {
     match curve {
         AnyCurve::Numbers(c) => c.at(t).map(Value::Number),
         AnyCurve::Plane(c) => c.at(t).map(Value::Vector2),
