@@ -174,7 +174,7 @@ impl Path {
             if hit.is_dark() {
                 break;
             }
-            let mut bsdf = Bsdf::BARE;
+            let mut bsdf = *Bsdf::before(&hit);
             bsdf.fill(world, &hit, &walk.ray)?;
             walk.weight *= walk.inside.left(&bsdf, hit.t);
             if !walk.slips(&hit, &bsdf) {
@@ -201,7 +201,7 @@ impl Path {
             return Ok(false);
         };
         walk.sampler.first.meet(&walk.ray, hit);
-        let mut bsdf = Bsdf::BARE;
+        let mut bsdf = *Bsdf::before(hit);
         bsdf.fill(world, hit, &walk.ray)?;
         walk.sampler.first.look(&bsdf);
         let goes_on = self.arrive(world, hit, &bsdf, walk);

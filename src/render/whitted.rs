@@ -141,7 +141,7 @@ impl Whitted {
             return Ok(task.weight * task.inside.kept(f64::INFINITY) * self.beyond(&task.ray));
         };
         sampler.first.meet(&task.ray, hit);
-        let mut bsdf = Bsdf::BARE;
+        let mut bsdf = *Bsdf::before(hit);
         bsdf.fill(world, hit, &task.ray)?;
         sampler.first.look(&bsdf);
         let bsdf = &bsdf;

@@ -5,30 +5,48 @@ use crate::scene::{Layers, Material, Rgb, Texture};
 use crate::world::texture::TexturePoint;
 use std::sync::Arc;
 
-/// A material, and what it is at every point if that is the same.
+/// A material, and what it is at every point if that is the same. Small, because a scene may have millions.
 #[derive(Debug)]
 pub struct Coat {
     /// As it was written.
     pub material: Arc<Material>,
-    /// None where a pattern or a map decides.
-    pub(super) same: Option<Bsdf>,
+    pub(super) same: Same,
+}
+
+/// What a material is at every point.
+#[derive(Debug)]
+pub(super) enum Same {
+    /// A pattern or a map decides.
+    No,
+    /// Matt and nothing else, of this albedo.
+    Matt(Rgb),
+    /// This.
+    All(Box<Bsdf>),
 }
 
 impl Coat {
     /// Made ready. Pictures need not have been read.
     pub fn new(material: Arc<Material>) -> Coat {
-        let same = is_same_everywhere(&material).then(|| constant(&material)).flatten();
+        let same = match (&material.layers, &material.diffuse) {
+            (None, Texture::Constant(albedo)) => Same::Matt(*albedo),
+            (None, Texture::Pattern(_)) => Same::No,
+            (Some(_), _) => layered(&material).map_or(Same::No, |bsdf| Same::All(Box::new(bsdf))),
+        };
         Coat { material, same }
     }
 
     /// True where it surely emits nothing and hides what is behind it.
     pub fn is_dark(&self) -> bool {
-        self.same.as_ref().is_some_and(|same| same.emit == Rgb::ZERO && same.opacity == 1.0)
+        match &self.same {
+            Same::No => false,
+            Same::Matt(_) => true,
+            Same::All(same) => same.emit == Rgb::ZERO && same.opacity == 1.0,
+        }
     }
 
     /// Whether a map turns the normal, for which the surface's tangent is needed.
     pub fn bends_normal(&self) -> bool {
-        self.same.is_none() && self.material.bends_normal()
+        matches!(self.same, Same::No) && self.material.bends_normal()
     }
 }
 
@@ -44,8 +62,11 @@ fn is_same_everywhere(material: &Material) -> bool {
         && bump.as_ref().is_none_or(is_constant)
 }
 
-/// Wherever it is asked.
-fn constant(material: &Material) -> Option<Bsdf> {
+/// What it is wherever it is asked. None where a pattern or a map decides.
+fn layered(material: &Material) -> Option<Bsdf> {
+    if !is_same_everywhere(material) {
+        return None;
+    }
     let mut bsdf = Bsdf::BARE;
     bsdf.add(material, &TexturePoint::default()).ok()?;
     Some(bsdf.with_losses())

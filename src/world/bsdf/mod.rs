@@ -17,6 +17,7 @@ use super::texture::{self, Sampled, TexturePoint};
 use super::{Ray, World};
 use crate::scene::{Fresnel, Lobe, Material, Rgb};
 pub use coat::Coat;
+use coat::Same;
 use energy::{Glass, Losses, Lost};
 use fresnel::{reflect, refract};
 use glam::{DVec2, DVec3};
@@ -25,7 +26,7 @@ pub use scatter::{Bounce, Odds};
 use std::f64::consts::FRAC_1_PI;
 
 /// A material at a hit, seen along `wo`.
-#[derive(Clone, Debug)]
+#[derive(Clone, Copy, Debug)]
 pub struct Bsdf {
     /// Unit vector to where it is seen from.
     pub wo: DVec3,
@@ -86,26 +87,39 @@ pub struct Scattered {
 impl Bsdf {
     /// The material where a ray met it. The world is only asked where a bump map needs its neighbourhood.
     pub fn at(world: &World, hit: &Hit<'_>, ray: &Ray) -> Sampled<Bsdf> {
-        let mut bsdf = Bsdf::BARE;
+        let mut bsdf = *Bsdf::before(hit);
         bsdf.fill(world, hit, ray)?;
         Ok(bsdf)
     }
 
-    /// The same in place of [`Bsdf::BARE`]: a copy of so much just written waits for the writes.
+    /// What is known of it whatever the ray and the place are: a copy of it is what [`Bsdf::fill`] begins with.
+    #[inline]
+    pub fn before<'w>(hit: &Hit<'w>) -> &'w Bsdf {
+        match &hit.coat.same {
+            Same::All(same) => same,
+            Same::Matt(_) | Same::No => &Bsdf::BARE,
+        }
+    }
+
+    /// The same as [`Bsdf::at`] in place of [`Bsdf::before`]: a copy of so much just written waits for the writes.
     #[inline]
     pub fn fill(&mut self, world: &World, hit: &Hit<'_>, ray: &Ray) -> Sampled<()> {
         if let Some(fault) = hit.fault {
             return Err(fault);
         }
-        let coat = hit.coat;
-        if let Some(same) = &coat.same {
-            self.clone_from(same);
-            self.see(hit, ray);
-            return Ok(());
-        }
         self.see(hit, ray);
+        match &hit.coat.same {
+            Same::Matt(albedo) => self.diffuse = *albedo,
+            Same::All(_) => {}
+            Same::No => self.read(world, hit, ray)?,
+        }
+        Ok(())
+    }
+
+    /// What the patterns and maps of its material say there.
+    fn read(&mut self, world: &World, hit: &Hit<'_>, ray: &Ray) -> Sampled<()> {
         let at = TexturePoint::from(hit);
-        self.add(&coat.material, &at)?;
+        self.add(&hit.coat.material, &at)?;
         self.bend_normal(world, hit, ray, &at)
     }
 

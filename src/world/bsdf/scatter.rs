@@ -139,7 +139,7 @@ impl Bsdf {
         let beyond = wo.dot(self.geometric) < 0.0;
         let side = if beyond { -1.0 } else { 1.0 };
         let (normal, geometric) = (self.normal * side, self.geometric * side);
-        Bsdf { wo, normal, geometric, outside: self.outside != beyond, ..self.clone() }
+        Bsdf { wo, normal, geometric, outside: self.outside != beyond, ..*self }
     }
 
     fn smooth(&self, way: super::Scattered, odds: f64, through: bool) -> Option<Bounce> {
