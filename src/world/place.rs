@@ -58,8 +58,17 @@ impl<'w> std::ops::Deref for Steps<'w> {
 }
 
 impl World {
-    #[inline]
-    fn path(&self, mut id: u64) -> Path<'_> {
+    #[inline(always)]
+    fn path(&self, id: u64) -> Path<'_> {
+        match id {
+            // Most things are not placed.
+            0 => Path { steps: Steps::None, aggregate: &self.aggregates[0] },
+            _ => self.path_into(id),
+        }
+    }
+
+    /// The way into a placement.
+    fn path_into(&self, mut id: u64) -> Path<'_> {
         let mut path = Path { steps: Steps::None, aggregate: &self.aggregates[0] };
         while let Aggregate::Group(group) = path.aggregate
             && let Some((position, instance)) = group.placement(id)
@@ -82,7 +91,6 @@ impl World {
                 Item::Instance(_) => return None,
             },
         };
-        // Most things are not placed.
         if path.steps.is_empty() {
             return self.carried(ray, t, candidate, (&path, shape), own_transform.into_iter());
         }
@@ -113,6 +121,8 @@ impl World {
                 own_point = Some(part.own_point);
                 part.whole
             }
+            // On the spot, as where there are spheres there are many.
+            (Some(Shape::Sphere(sphere)), _) => sphere.surface(local, &candidate.meet),
             (Some(shape), _) => shape.surface(local, &candidate.meet),
             (None, Aggregate::Mesh(mesh)) => {
                 worn = mesh.shape.worn_at(candidate.id.part, &candidate.meet);

@@ -1,6 +1,6 @@
 //! Rays through aggregates and their placements.
 
-use super::aggregate::{Aggregate, Group, Item};
+use super::aggregate::{Aggregate, Group, Item, MeshAggregate};
 use super::bvh::Stored;
 use super::shape::{Csg, LocalRay, Meet, Shape};
 use super::{PrimitiveId, RayKind, World};
@@ -66,30 +66,51 @@ impl<'w> Query<'w> {
         query.found
     }
 
+    #[inline(always)]
     fn visit(&mut self, aggregate: &Aggregate, local: &Local<'_>) {
         match aggregate {
             Aggregate::Group(group) => self.visit_group(group, local),
-            Aggregate::Mesh(mesh) => {
-                let met = mesh.shape.meet_nearest(local.ray, self.limit * local.per_world, self.any);
-                if let Some((position, meet)) = met {
-                    let part = mesh.shape.triangle_at(position);
-                    let id = PrimitiveId { instance: local.instance, shape: 0, part };
-                    self.offer(id, 0, meet, local);
-                }
-            }
+            Aggregate::Mesh(mesh) => self.visit_mesh(mesh, local),
         }
     }
 
     #[inline]
+    fn visit_mesh(&mut self, mesh: &MeshAggregate, local: &Local<'_>) {
+        let met = mesh.shape.meet_nearest(local.ray, self.limit * local.per_world, self.any);
+        if let Some((position, meet)) = met {
+            let part = mesh.shape.triangle_at(position);
+            let id = PrimitiveId { instance: local.instance, shape: 0, part };
+            self.offer(id, 0, meet, local);
+        }
+    }
+
+    /// Groups hold groups, so there is one such function and no copies of it.
+    #[inline(never)]
     fn visit_group(&mut self, group: &Group, local: &Local<'_>) {
         self.each(group, local, |query, range| {
             for position in range {
-                query.visit_item(group, position, local);
+                query.visit_position(group, position, local);
                 if query.any && query.found.is_some() {
                     break;
                 }
             }
         });
+    }
+
+    /// What stands where it was made and is hidden from nobody is most of most groups.
+    #[inline(always)]
+    fn visit_position(&mut self, group: &Group, position: usize, local: &Local<'_>) {
+        match &group.items[position] {
+            _ if !group.hide.is_empty() => self.visit_item(group, position, local),
+            // These are many where there are any, and most are missed: they are tested on the spot.
+            Item::Shape(Shape::Sphere(sphere), None) => {
+                if let Some(t) = sphere.distance(local.ray, self.limit * local.per_world) {
+                    self.take(group, position, Meet::at(t), local);
+                }
+            }
+            Item::Shape(shape, None) => self.meet(shape, group, position, local),
+            Item::Shape(_, Some(_)) | Item::Instance(_) => self.visit_item(group, position, local),
+        }
     }
 
     /// All that the ray may meet, near ones first; where any meeting will do in no order, until there is one.
@@ -111,7 +132,7 @@ impl<'w> Query<'w> {
         }
     }
 
-    #[inline]
+    #[inline(never)]
     fn visit_item(&mut self, group: &Group, position: usize, local: &Local<'_>) {
         if !group.hide.is_empty()
             && is_hidden(group.hide[group.number_of(position as u32) as usize], self.kind)
@@ -147,11 +168,17 @@ impl<'w> Query<'w> {
         let limit = self.limit * inside.per_world;
         let met = if self.any { shape.meet_any(inside.ray, limit) } else { shape.meet(inside.ray, limit) };
         if let Some(meet) = met {
-            let part = Csg::part_number(&meet);
-            let number = group.number_of(position as u32);
-            let id = PrimitiveId { instance: inside.instance, shape: number, part };
-            self.offer(id, position as u32, meet, inside);
+            self.take(group, position, meet, inside);
         }
+    }
+
+    /// A meeting with a shape of a group.
+    #[inline]
+    fn take(&mut self, group: &Group, position: usize, meet: Meet, inside: &Local<'_>) {
+        let part = Csg::part_number(&meet);
+        let number = group.number_of(position as u32);
+        let id = PrimitiveId { instance: inside.instance, shape: number, part };
+        self.offer(id, position as u32, meet, inside);
     }
 
     #[inline]

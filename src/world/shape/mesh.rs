@@ -91,6 +91,7 @@ impl MeshShape {
     }
 
     /// The nearest meeting at a distance in (0, limit], or any, and its position in the tree's order; of equally near ones the first triangle.
+    #[inline]
     pub fn meet_nearest(&self, ray: &LocalRay, limit: f64, any: bool) -> Option<(usize, Meet)> {
         let vertices = &*self.mesh.positions;
         let among = Ordered { corners: &self.corners, vertices, order: self.tree.order() };

@@ -33,23 +33,62 @@ fn passes_by(al: DVec3, a: f64, radius: f64, reach: f64) -> bool {
     al.length_squared() > clear * clear
 }
 
+/// By how much the square of a distance from the centre must exceed that of the radius, as a share of it, to be surely outside. Seven units are
+/// what rounding does to both; the nine that are left keep what is behind the ray's start behind it, by however a root is found and rounded.
+const OUTSIDE: f64 = 1.0 + gamma(16);
+
+/// Where a ray meets a sphere: two quotients in order, of which most rays need one.
+struct Roots {
+    near: (f64, f64),
+    far: (f64, f64),
+}
+
+impl Roots {
+    #[inline(always)]
+    fn near(&self) -> f64 {
+        self.near.0 / self.near.1
+    }
+
+    #[inline(always)]
+    fn far(&self) -> f64 {
+        self.far.0 / self.far.1
+    }
+}
+
 impl Sphere {
+    /// The least distance in (0, limit] at which a ray meets it.
+    #[inline(always)]
+    pub fn distance(&self, ray: &LocalRay, limit: f64) -> Option<f64> {
+        if self.is_left(ray) {
+            return None;
+        }
+        let roots = self.roots(ray)?;
+        let near = roots.near();
+        let t = if near > 0.0 { near } else { roots.far() };
+        (t > 0.0 && t <= limit).then_some(t)
+    }
+
     #[inline]
     pub(super) fn meet(&self, ray: &LocalRay, limit: f64) -> Option<Meet> {
-        let (near, far) = self.roots(ray)?;
-        let t = if near > 0.0 { near } else { far };
-        (t > 0.0 && t <= limit).then(|| Meet::at(t))
+        self.distance(ray, limit).map(Meet::at)
+    }
+
+    /// True where a ray surely starts outside and goes away: so do all that leave it.
+    #[inline(always)]
+    fn is_left(&self, ray: &LocalRay) -> bool {
+        let f = ray.origin - self.center;
+        f.dot(ray.direction) > 0.0 && f.length_squared() > self.radius * self.radius * OUTSIDE
     }
 
     pub(super) fn crossings(&self, ray: &LocalRay, out: &mut Vec<Meet>) {
-        if let Some((near, far)) = self.roots(ray) {
-            out.extend([near, far].into_iter().filter(|t| ahead(*t)).map(Meet::at));
+        if let Some(roots) = self.roots(ray) {
+            out.extend([roots.near(), roots.far()].into_iter().filter(|t| ahead(*t)).map(Meet::at));
         }
     }
 
-    /// Both distances, in order.
-    #[inline]
-    fn roots(&self, ray: &LocalRay) -> Option<(f64, f64)> {
+    /// Both distances.
+    #[inline(always)]
+    fn roots(&self, ray: &LocalRay) -> Option<Roots> {
         let (d, r) = (ray.direction, self.radius);
         let f = ray.origin - self.center;
         let a = d.dot(d);
@@ -64,12 +103,17 @@ impl Sphere {
             return None;
         }
         if reach > FAR * r || -miss_by < GRAZING * r {
-            return self.precise_roots(ray, b / a);
+            let (near, far) = self.precise_roots(ray, b / a)?;
+            return Some(Roots { near: (near, 1.0), far: (far, 1.0) });
         }
         let length = f.length();
         let c = (length - r) * (length + r);
         let root = (-a * miss_by * (l.length() + r)).sqrt();
-        if b > 0.0 { Some((c / (b + root), (b + root) / a)) } else { Some(((b - root) / a, c / (b - root))) }
+        Some(if b > 0.0 {
+            Roots { near: (c, b + root), far: (b + root, a) }
+        } else {
+            Roots { near: (b - root, a), far: (c, b - root) }
+        })
     }
 
     /// From the point nearest to the centre, found in twice the working precision. `approach` is its distance, roughly.
@@ -91,7 +135,9 @@ impl Sphere {
         (half >= 0.0).then_some((approach + (rest - half), approach + (rest + half)))
     }
 
-    pub(super) fn surface(&self, ray: &LocalRay, meet: &Meet) -> Surface {
+    /// The surface where a ray met it.
+    #[inline]
+    pub fn surface(&self, ray: &LocalRay, meet: &Meet) -> Surface {
         let from_center = (ray.origin - self.center) + ray.direction * meet.t;
         let normal = from_center.try_normalize().unwrap_or(DVec3::Y);
         let point = self.center + normal * self.radius;

@@ -94,6 +94,29 @@ fn the_first_crossing_is_the_meeting() {
     }
 }
 
+/// Rays from within some roundings of a sphere's surface, half of them almost along it: the roots alone give the same answers as where
+/// spheres behind a ray's start are told before.
+#[test]
+fn a_sphere_that_a_ray_leaves_is_told_as_by_its_roots() {
+    let mut random = Random(23);
+    let mut behind = 0;
+    for case in 0..100_000 {
+        let size = 4f64.powi(case % 16);
+        let sphere = Sphere { center: random.vector() * size, radius: 1.5 + random.next() };
+        let out = random.vector().normalize_or(DVec3::X);
+        let origin = sphere.center + out * (sphere.radius * (1.0 + random.next() * 64.0 * f64::EPSILON));
+        let slope = if case % 2 == 0 { random.next() } else { random.next() * 2f64.powi(-(case / 2 % 60)) };
+        let direction = random.vector().cross(out).normalize_or(DVec3::Y) + out * slope;
+        let (ray, _) = LocalRay::new(origin, direction).expect("a direction");
+        let (shape, mut all) = (Shape::Sphere(sphere), Vec::new());
+        shape.crossings(&ray, &mut all);
+        let met = shape.meet(&ray, f64::MAX);
+        assert_eq!(met.as_ref().map(bits), all.first().map(bits), "case {case}: {sphere:?}, {ray:?}");
+        behind += usize::from(met.is_none());
+    }
+    assert!(behind > 25_000, "{behind}");
+}
+
 #[test]
 fn an_odd_number_of_crossings_lies_ahead_of_a_point_inside() {
     let mut random = Random(2);
