@@ -86,20 +86,23 @@ impl View {
 
     /// The ray through a point of the picture and a point of the lens, given by two numbers in [0, 1)²; none where the
     /// projection shows nothing (outside a fisheye's 360°). A pinhole does not look at `lens`.
+    #[inline]
     pub fn ray(&self, pixel: DVec2, lens: DVec2) -> Option<Ray> {
         let p = DVec2::new(2.0 * pixel.x / self.size.x - 1.0, 1.0 - 2.0 * pixel.y / self.size.y);
-        let (origin, toward, sharp) = match self.film {
+        let (origin, toward) = match self.film {
             Projected::Perspective(tangent) => {
-                let v = self.in_frame(p.x * tangent.x, p.y * tangent.y, 1.0);
-                (self.eye, v, self.focus)
+                (self.eye, self.in_frame(p.x * tangent.x, p.y * tangent.y, 1.0))
             }
             Projected::Orthographic(half) => {
-                (self.eye + self.in_frame(p.x * half.x, p.y * half.y, 0.0), self.forward, self.focus)
+                (self.eye + self.in_frame(p.x * half.x, p.y * half.y, 0.0), self.forward)
             }
-            Projected::Fisheye(scale) => (self.eye, self.fisheye(p, scale)?, self.focus),
-            Projected::Panorama => (self.eye, self.panorama(p), self.focus),
+            Projected::Fisheye(scale) => (self.eye, self.fisheye(p, scale)?),
+            Projected::Panorama => (self.eye, self.panorama(p)),
         };
-        Some(self.through_lens(origin, toward, sharp, lens))
+        let (origin, toward) =
+            if self.has_lens() { self.through_lens(origin, toward, lens) } else { (origin, toward) };
+        let direction = toward.normalize();
+        Some(Ray { origin, direction, t_max: f64::INFINITY, kind: RayKind::Camera })
     }
 
     /// How large a pixel is where: of a perspective at the corners of the picture, where a distance from the eye shows largest.
@@ -117,10 +120,12 @@ impl View {
     }
 
     /// True where rays of one pixel differ by where they pass the lens.
+    #[inline]
     pub fn has_lens(&self) -> bool {
         self.lens_radius > 0.0
     }
 
+    #[inline]
     fn in_frame(&self, x: f64, y: f64, z: f64) -> DVec3 {
         self.right * x + self.up * y + self.forward * z
     }
@@ -142,18 +147,12 @@ impl View {
         self.in_frame(sx * cy, sy, cx * cy)
     }
 
-    /// `toward` times `sharp` leads from the origin to the point that stays sharp.
-    fn through_lens(&self, origin: DVec3, toward: DVec3, sharp: f64, lens: DVec2) -> Ray {
-        let mut ray = Ray { origin, direction: toward, t_max: f64::INFINITY, kind: RayKind::Camera };
-        if self.has_lens() {
-            let (s, c) = sin_cos_turns(lens.y);
-            let r = self.lens_radius * lens.x.sqrt();
-            let offset = self.right * (r * c) + self.up * (r * s);
-            ray.origin += offset;
-            ray.direction = toward * sharp - offset;
-        }
-        ray.direction = ray.direction.normalize();
-        ray
+    /// Where a ray passes the lens, and toward where from there: `toward` times the focus leads from the origin to the point that stays sharp.
+    fn through_lens(&self, origin: DVec3, toward: DVec3, lens: DVec2) -> (DVec3, DVec3) {
+        let (s, c) = sin_cos_turns(lens.y);
+        let r = self.lens_radius * lens.x.sqrt();
+        let offset = self.right * (r * c) + self.up * (r * s);
+        (origin + offset, toward * self.focus - offset)
     }
 }
 

@@ -92,9 +92,15 @@ fn white(settings: &ResolvedSettings) -> f64 {
 
 /// How many rays of each sample find what a pixel is seen to emit: none where no outline of a lamp is seen in it, or where its only sample
 /// is to go through its centre; else as many as leave no more noise than the edge of white paper has; a power of two. The rays that ask are counted.
+#[inline]
 pub fn rays(picture: Picture<'_>, pixel: [u32; 2], counts: &mut RayCounts) -> u32 {
+    if picture.settings.samples == 1 { 0 } else { rays_of_samples(picture, pixel, counts) }
+}
+
+/// The same of samples that go anywhere in a pixel.
+fn rays_of_samples(picture: Picture<'_>, pixel: [u32; 2], counts: &mut RayCounts) -> u32 {
     let Outlines { lamps, most } = picture.tracer.outlines();
-    if *most == 0 || picture.settings.samples == 1 || !may_show(picture, pixel, lamps) {
+    if *most == 0 || !may_show(picture, pixel, lamps) {
         return 0;
     }
     let [x, y] = pixel;
@@ -120,13 +126,22 @@ pub struct Emission {
     pub left: Rgb,
 }
 
+impl Emission {
+    const NOTHING: Emission = Emission { all: Rgb::ZERO, left: Rgb::ZERO };
+}
+
 /// What is seen to emit in a pixel, at the next sample.
+#[inline]
 pub fn emission(picture: Picture<'_>, pixel: [u32; 2], sampler: &mut Sampler) -> Emission {
-    let n = sampler.emission_rays;
-    let mut found = Emission { all: Rgb::ZERO, left: Rgb::ZERO };
-    if n == 0 {
-        return found;
+    match sampler.emission_rays {
+        0 => Emission::NOTHING,
+        n => emission_by(n, picture, pixel, sampler),
     }
+}
+
+/// The same by n rays, at least one.
+fn emission_by(n: u32, picture: Picture<'_>, pixel: [u32; 2], sampler: &mut Sampler) -> Emission {
+    let mut found = Emission::NOTHING;
     let rays = Rays::of(picture, pixel, n, sampler);
     for i in 0..n {
         let emitted = rays.emission(i, 1.0, sampler);

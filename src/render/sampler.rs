@@ -87,6 +87,7 @@ impl std::ops::AddAssign for RayCounts {
 
 impl Sampler {
     /// The numbers of one sample of the pixel in column x and row y of the whole picture.
+    #[inline]
     pub fn new(seed: u64, x: u32, y: u32, sample: u32) -> Sampler {
         Sampler {
             seed,
@@ -110,20 +111,29 @@ impl Sampler {
     }
 
     /// The same sample by numbers of another kind, of so many of its pixel.
-    pub fn of_kind(self, kind: SamplerKind, samples: u32) -> Sampler {
-        Sampler { kind, samples, ..self }
+    #[inline]
+    pub fn of_kind(mut self, kind: SamplerKind, samples: u32) -> Sampler {
+        (self.kind, self.samples) = (kind, samples);
+        self
     }
 
     /// The same sample, of which it is asked what the camera's ray meets first.
-    pub fn asking(self, asks: bool) -> Sampler {
-        Sampler { first: if asks { First::Awaited } else { First::Unasked }, ..self }
+    #[inline]
+    pub fn asking(mut self, asks: bool) -> Sampler {
+        self.first = if asks { First::Awaited } else { First::Unasked };
+        self
     }
 
-    /// The next sample of the pixel, with nothing noted.
+    /// The next sample of the pixel, with nothing noted. In place: most of it stays, and it is not small.
+    #[inline]
     pub fn restart(&mut self) {
-        let sample = self.sample + 1;
-        let first = if let First::Unasked = self.first { First::Unasked } else { First::Awaited };
-        *self = Sampler { sample, dimension: 0, rays: RayCounts::default(), undefined: None, first, ..*self };
+        self.sample += 1;
+        self.dimension = 0;
+        self.rays = RayCounts::default();
+        self.undefined = None;
+        if let First::Seen(_) = self.first {
+            self.first = First::Awaited;
+        }
     }
 
     /// The next number, in (0, 1).

@@ -146,8 +146,7 @@ pub(super) struct Tile {
 impl Tile {
     /// Without a sample.
     pub fn new(crop: Crop, settings: &ResolvedSettings) -> Tile {
-        let places = (0..crop.height).flat_map(|y| (0..crop.width).map(move |x| [crop.x + x, crop.y + y]));
-        let pixels = places.map(|place| Pixel::new(place, settings)).collect();
+        let pixels = places(crop).map(|place| Pixel::new(place, settings)).collect();
         Tile { crop, pixels, report: Report::default() }
     }
 
@@ -164,32 +163,55 @@ impl Tile {
 
     /// What there is of the picture; pixels with fewer than `to` samples are not finished, unless they have enough.
     pub fn film(&self, settings: &ResolvedSettings, to: u32) -> Film {
-        let mut film = Film::new(settings.size, self.crop);
-        film.layers = settings.layers;
-        film.report = self.report.clone();
-        film.keep(settings.kept());
+        let mut film = blank(self.crop, settings, self.report.clone());
         for (i, pixel) in self.pixels.iter().enumerate() {
-            if pixel.taken < to && !pixel.enough {
-                continue;
-            }
-            film.pixels[i] = pixel.radiance(&mut film.report);
-            film.finished[i] = true;
-            film.report.taken.add(pixel.taken, pixel.enough);
-            if let Some(sum) = &pixel.features {
-                let (features, source) = sum.features();
-                film.features[i] = Features { source: source.map_or(0, |s| film.number_of(s)), ..features };
-            }
+            show(&mut film, i, pixel, to);
         }
         film
     }
 }
 
+/// The pixels of a crop in reading order, by column and row.
+fn places(crop: Crop) -> impl Iterator<Item = [u32; 2]> {
+    (0..crop.height).flat_map(move |y| (0..crop.width).map(move |x| [crop.x + x, crop.y + y]))
+}
+
+/// A crop's film without a pixel.
+fn blank(crop: Crop, settings: &ResolvedSettings, report: Report) -> Film {
+    let mut film = Film::new(settings.size, crop);
+    film.layers = settings.layers;
+    film.report = report;
+    film.keep(settings.kept());
+    film
+}
+
+/// Puts what a pixel has come to into its place, if that is `to` samples or enough.
+#[inline]
+fn show(film: &mut Film, place: usize, pixel: &Pixel, to: u32) {
+    if pixel.taken < to && !pixel.enough {
+        return;
+    }
+    film.pixels[place] = pixel.radiance(&mut film.report);
+    film.finished[place] = true;
+    film.report.taken.add(pixel.taken, pixel.enough);
+    if let Some(sum) = &pixel.features {
+        let (features, source) = sum.features();
+        film.features[place] = Features { source: source.map_or(0, |s| film.number_of(s)), ..features };
+    }
+}
+
+/// Pixel by pixel: none is kept, as all samples are taken at once. Whoever wants to know which are finished asks the film.
 fn render_tile(picture: Picture<'_>, crop: Crop, cancel: &AtomicBool) -> Film {
-    let mut tile = Tile::new(crop, picture.settings);
-    let samples = picture.settings.samples;
-    // Whoever wants to know which pixels are finished asks the film.
-    let _ = tile.advance(picture, samples, cancel);
-    tile.film(picture.settings, samples)
+    let (settings, to) = (picture.settings, picture.settings.samples);
+    let mut film = blank(crop, settings, Report::default());
+    for (i, place) in places(crop).enumerate() {
+        let mut pixel = Pixel::new(place, settings);
+        if !pixel.advance(picture, to, &mut film.report, cancel) {
+            break;
+        }
+        show(&mut film, i, &pixel, to);
+    }
+    film
 }
 
 /// Copies a part into a film.

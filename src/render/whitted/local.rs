@@ -39,8 +39,9 @@ impl Whitted {
         sampler: &mut Sampler,
     ) -> Sampled<Rgb> {
         if light.is_delta() {
-            return match light.sample(hit.point, bsdf.normal, DVec2::ZERO) {
-                Some(s) => self.arriving(world, hit, light, &s, bsdf.base(s.wi) + bsdf.gloss(s.wi), sampler),
+            // Looked at where it stands, here and below: it is not small.
+            return match &light.sample(hit.point, bsdf.normal, DVec2::ZERO) {
+                Some(s) => self.arriving(world, hit, light, s, bsdf.base(s.wi) + bsdf.gloss(s.wi), sampler),
                 None => Ok(Rgb::ZERO),
             };
         }
@@ -51,8 +52,8 @@ impl Whitted {
         let points = sampler.next_set();
         let mut sum = Rgb::ZERO;
         for i in 0..n {
-            if let Some(s) = light.sample(hit.point, bsdf.normal, points.point(i, n)) {
-                sum += self.arriving(world, hit, light, &s, bsdf.base(s.wi), sampler)?;
+            if let Some(s) = &light.sample(hit.point, bsdf.normal, points.point(i, n)) {
+                sum += self.arriving(world, hit, light, s, bsdf.base(s.wi), sampler)?;
             }
         }
         Ok(sum / f64::from(n))
