@@ -51,15 +51,18 @@ impl Evaluator<'_> {
     /// Counts a turn of a loop.
     #[inline]
     pub(super) fn turn(&mut self, span: Span) -> Outcome<()> {
+        if self.turn_at_once() { Ok(()) } else { self.turns(1, span) }
+    }
+
+    /// The same; false, and not counted, where something is to be said or looked at.
+    #[inline]
+    fn turn_at_once(&mut self) -> bool {
         match self.guards.turns.checked_sub(1) {
-            Some(left) => {
+            Some(left) if left % TURNS_BETWEEN_LOOKS != 0 => {
                 self.guards.turns = left;
-                if left % TURNS_BETWEEN_LOOKS == 0 {
-                    self.heed_cancel();
-                }
-                Ok(())
+                true
             }
-            None => Err(self.too_many_turns(span)),
+            _ => false,
         }
     }
 
@@ -116,16 +119,8 @@ impl Evaluator<'_> {
     /// Counts a call that itself calls nothing; false, and not counted, where something is to be said or looked at.
     #[inline]
     pub(super) fn deeper_at_once(&mut self) -> bool {
-        if self.guards.leaving || self.calls.len() >= self.run.limits.calls {
-            return false;
-        }
-        match self.guards.turns.checked_sub(1) {
-            Some(left) if left % TURNS_BETWEEN_LOOKS != 0 => {
-                self.guards.turns = left;
-                true
-            }
-            _ => false,
-        }
+        let is_shallow = !self.guards.leaving && self.calls.len() < self.run.limits.calls;
+        is_shallow && self.turn_at_once()
     }
 
     #[cold]
