@@ -94,7 +94,7 @@ mod x86 {
         /// part of it, and what both need stays in registers.
         #[target_feature(enable = "avx2,bmi1,bmi2,fma")]
         #[inline]
-        pub(in crate::world) fn traverse_avx2(
+        pub(in crate::world) fn traverse_v3(
             &self,
             origin: DVec3,
             direction: DVec3,
@@ -103,14 +103,14 @@ mod x86 {
             mut leaf: impl FnMut(Range<usize>, f64) -> f64,
         ) {
             if t_max >= 0.0 {
-                walk_avx2(self, [origin, direction], t_max, stored, &mut leaf);
+                walk_v3(self, [origin, direction], t_max, stored, &mut leaf);
             }
         }
 
         /// [`Tree::traverse_any`], so.
         #[target_feature(enable = "avx2,bmi1,bmi2,fma")]
         #[inline]
-        pub(in crate::world) fn traverse_any_avx2(
+        pub(in crate::world) fn traverse_any_v3(
             &self,
             origin: DVec3,
             direction: DVec3,
@@ -119,7 +119,7 @@ mod x86 {
             mut leaf: impl FnMut(Range<usize>) -> bool,
         ) {
             if t_max >= 0.0 {
-                walk_any_avx2(self, [origin, direction], t_max, stored, &mut leaf);
+                walk_any_v3(self, [origin, direction], t_max, stored, &mut leaf);
             }
         }
     }
@@ -140,7 +140,7 @@ mod x86 {
         leaf: &mut impl FnMut(Range<usize>, f64) -> f64,
     ) {
         let ray = [DVec3::new(x, y, z), DVec3::new(along_x, along_y, along_z)];
-        walk_avx2(tree, ray, t_max, stored, leaf);
+        walk_v3(tree, ray, t_max, stored, leaf);
     }
 
     /// The same in no order.
@@ -159,12 +159,12 @@ mod x86 {
         leaf: &mut impl FnMut(Range<usize>) -> bool,
     ) {
         let ray = [DVec3::new(x, y, z), DVec3::new(along_x, along_y, along_z)];
-        walk_any_avx2(tree, ray, t_max, stored, leaf);
+        walk_any_v3(tree, ray, t_max, stored, leaf);
     }
 
     #[target_feature(enable = "avx2,bmi1,bmi2,fma")]
     #[inline]
-    fn walk_avx2(
+    fn walk_v3(
         tree: &Tree,
         ray: [DVec3; 2],
         t_max: f64,
@@ -177,7 +177,7 @@ mod x86 {
 
     #[target_feature(enable = "avx2,bmi1,bmi2,fma")]
     #[inline]
-    fn walk_any_avx2(
+    fn walk_any_v3(
         tree: &Tree,
         ray: [DVec3; 2],
         t_max: f64,

@@ -137,11 +137,11 @@ mod x86 {
             true
         };
         if ANY {
-            tree.traverse_any_avx2(ray.origin, ray.direction, limit, Stored::of(all, AT_ONCE), |range| {
+            tree.traverse_any_v3(ray.origin, ray.direction, limit, Stored::of(all, AT_ONCE), |range| {
                 look(&mut found, range)
             });
         } else {
-            tree.traverse_avx2(ray.origin, ray.direction, limit, Stored::of(all, AT_ONCE), |range, _| {
+            tree.traverse_v3(ray.origin, ray.direction, limit, Stored::of(all, AT_ONCE), |range, _| {
                 look(&mut found, range);
                 found.limit
             });
@@ -186,7 +186,7 @@ mod x86 {
     ) -> Option<(usize, Meet)> {
         let mut found = Found::nothing(limit);
         if ANY {
-            tree.traverse_any_avx2(ray.origin, ray.direction, limit, Stored::NOWHERE, |range| {
+            tree.traverse_any_v3(ray.origin, ray.direction, limit, Stored::NOWHERE, |range| {
                 for position in range {
                     if let Some(meet) = test(position, limit) {
                         found.take(position, meet, among.order);
@@ -196,7 +196,7 @@ mod x86 {
                 true
             });
         } else {
-            tree.traverse_avx2(ray.origin, ray.direction, limit, Stored::NOWHERE, |range, _| {
+            tree.traverse_v3(ray.origin, ray.direction, limit, Stored::NOWHERE, |range, _| {
                 for position in range {
                     if let Some(meet) = test(position, found.limit) {
                         found.take(position, meet, among.order);
