@@ -1,5 +1,7 @@
 //! A ray among triangles that stand in the order of a tree: what it has met so far, leaf by leaf.
 
+#[cfg(target_arch = "x86_64")]
+mod walked;
 mod wide;
 
 use super::Sheared;
@@ -23,7 +25,7 @@ pub struct Ordered<'m> {
 
 impl Ordered<'_> {
     /// The nearest meeting at a distance in (0, limit], or any, and its position in the order of this tree; of equally near ones the first triangle.
-    #[inline]
+    #[inline(always)]
     pub fn nearest(self, tree: &Tree, ray: &LocalRay, limit: f64, any: bool) -> Option<(usize, Meet)> {
         wide::nearest(self, tree, ray, limit, any)
     }
