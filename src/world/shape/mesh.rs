@@ -144,17 +144,17 @@ impl MeshShape {
             normals: (!mesh.normals.is_empty()).then(|| three(&mesh.normals, indices)),
             uvs: (!mesh.uvs.is_empty()).then(|| three(&mesh.uvs, indices)),
         };
-        surface_of(corners(mesh, indices), data, meet, bent)
+        surface_of(three(&mesh.positions, indices), data, meet, bent)
     }
 }
 
 #[inline(always)]
 fn corners(mesh: &Mesh, indices: [u32; 3]) -> [DVec3; 3] {
-    three(&mesh.positions, indices)
+    three(&mesh.positions, indices).map(|p| *p)
 }
 
 /// What stands at three places.
 #[inline(always)]
-fn three<T: Copy>(all: &[T], [a, b, c]: [u32; 3]) -> [T; 3] {
-    [all[a as usize], all[b as usize], all[c as usize]]
+fn three<T>(all: &[T], [a, b, c]: [u32; 3]) -> [&T; 3] {
+    [&all[a as usize], &all[b as usize], &all[c as usize]]
 }

@@ -8,13 +8,16 @@
 pub mod cut;
 pub mod leaf;
 pub mod search;
+mod surface;
+
+pub use surface::{Corners, surface_of};
 
 use super::{LocalRay, Meet, Surface};
 use crate::math::Aabb;
 use crate::math::error::gamma;
 use crate::math::exact::difference_of_products;
 use crate::scene;
-use glam::{DVec2, DVec3};
+use glam::DVec3;
 
 /// A ray prepared for many triangles.
 #[derive(Clone, Copy, Debug)]
@@ -192,61 +195,6 @@ fn accurate(a: f64, b: f64, c: f64, d: f64) -> f64 {
     (p - q) + (e - f)
 }
 
-/// What a triangle's corners may carry.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Corners {
-    /// Unit shading normals.
-    pub normals: Option<[DVec3; 3]>,
-    /// Texture coordinates; barycentric ones where there are none.
-    pub uvs: Option<[DVec2; 3]>,
-}
-
-/// The surface of a triangle at barycentric coordinates. The geometric normal follows the corner normals where there are any
-/// (files wind their faces carelessly more often than they turn normals inside out), else the winding. Its tangent is only found where the
-/// normal is to be `bent` by a map, else it is 0.
-#[inline(always)]
-pub fn surface_of(corners: [DVec3; 3], data: Corners, meet: &Meet, bent: bool) -> Surface {
-    let [a, b, c] = corners;
-    let weights = [1.0 - meet.a - meet.b, meet.a, meet.b];
-    let point = a * weights[0] + b * weights[1] + c * weights[2];
-    let spread = |p: DVec3, w: f64| (p * w).abs() + (p - point).abs() * w.abs();
-    let error = (spread(a, weights[0]) + spread(b, weights[1]) + spread(c, weights[2])) * gamma(8);
-    let wound = unit(normal_of(corners)).unwrap_or(DVec3::Y);
-    let total = data.normals.map_or(wound, |n| n[0] + n[1] + n[2]);
-    let geometric_normal = if total.dot(wound) < 0.0 { -wound } else { wound };
-    let blended = data.normals.map(|n| n[0] * weights[0] + n[1] * weights[1] + n[2] * weights[2]);
-    let normal = blended.and_then(DVec3::try_normalize).unwrap_or(geometric_normal);
-    let uvs = data.uvs.unwrap_or([DVec2::ZERO, DVec2::X, DVec2::Y]);
-    Surface {
-        point,
-        error,
-        geometric_normal,
-        normal,
-        tangent: if bent { tangent_of(corners, uvs) } else { DVec3::ZERO },
-        uv: (uvs[0] * weights[0] + uvs[1] * weights[1] + uvs[2] * weights[2]).into(),
-    }
-}
-
-/// ∂p/∂u; 0 where (u, v) is degenerate.
-fn tangent_of([a, b, c]: [DVec3; 3], uvs: [DVec2; 3]) -> DVec3 {
-    let (e, f) = (uvs[1] - uvs[0], uvs[2] - uvs[0]);
-    let determinant = accurate(e.x, f.y, e.y, f.x);
-    if determinant == 0.0 {
-        return DVec3::ZERO;
-    }
-    let along = ((b - a) * f.y - (c - a) * e.y) * determinant.signum();
-    if along.is_finite() { along } else { DVec3::ZERO }
-}
-
-/// A vector of any finite length but 0, normalised without overflow.
-fn unit(v: DVec3) -> Option<DVec3> {
-    let size = v.abs().max_element();
-    if !(size > 0.0 && size.is_finite()) {
-        return None;
-    }
-    (v / size).try_normalize()
-}
-
 /// A triangle on its own.
 #[derive(Clone, Copy, Debug)]
 pub struct Triangle(pub scene::Triangle);
@@ -257,7 +205,12 @@ impl Triangle {
     }
 
     pub(super) fn surface(&self, meet: &Meet) -> Surface {
-        surface_of(self.0.vertices, Corners { normals: self.0.normals, uvs: self.0.uvs }, meet, true)
+        let scene::Triangle { vertices, normals, uvs, .. } = &self.0;
+        let data = Corners {
+            normals: normals.as_ref().map(|all| all.each_ref()),
+            uvs: uvs.as_ref().map(|all| all.each_ref()),
+        };
+        surface_of(vertices.each_ref(), data, meet, true)
     }
 
     pub(super) fn bounds(&self) -> Aabb {
