@@ -24,6 +24,14 @@ struct Path<'w> {
     aggregate: &'w Aggregate,
 }
 
+impl Path<'_> {
+    /// Those of the placements, outermost first.
+    #[inline]
+    fn transforms(&self) -> impl Iterator<Item = &Affine> + Clone {
+        self.steps.iter().filter_map(|step| step.instance.transform.as_ref())
+    }
+}
+
 /// A few steps without allocation, any number with.
 enum Steps<'w> {
     None,
@@ -91,11 +99,30 @@ impl World {
                 Item::Instance(_) => return None,
             },
         };
-        if path.steps.is_empty() {
-            return self.carried(ray, t, candidate, (&path, shape), own_transform.into_iter());
+        let (first, second) = if path.steps.is_empty() {
+            (own_transform, None)
+        } else {
+            let mut all = path.transforms().chain(own_transform);
+            (all.next(), all.next())
+        };
+        match second {
+            // Most things stand under one transform at the most.
+            None => self.carried(ray, t, candidate, (&path, shape), first.into_iter()),
+            Some(_) => self.carried_far(ray, t, candidate, (&path, shape), own_transform),
         }
-        let placements = path.steps.iter().filter_map(|step| step.instance.transform.as_ref());
-        self.carried(ray, t, candidate, (&path, shape), placements.chain(own_transform))
+    }
+
+    /// The hit on what stands under several transforms.
+    #[inline(never)]
+    fn carried_far<'w>(
+        &'w self,
+        ray: &LocalRay,
+        t: f64,
+        candidate: &Candidate,
+        (path, shape): (&Path<'w>, Option<&'w Shape>),
+        own_transform: Option<&Affine>,
+    ) -> Option<Hit<'w>> {
+        self.carried(ray, t, candidate, (path, shape), path.transforms().chain(own_transform))
     }
 
     /// The hit on what stands under transforms, outermost first.
