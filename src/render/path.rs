@@ -24,7 +24,7 @@ use super::sampler::Sampler;
 use super::settings::ResolvedSettings;
 use super::tiles::{Picture, Watch};
 use crate::scene::{Material, Rgb};
-use crate::world::bsdf::{Bsdf, Odds};
+use crate::world::bsdf::{Bsdf, Odds, Slot};
 use crate::world::light::{Choice, Lights};
 use crate::world::texture::Sampled;
 use crate::world::{Hit, Ray, SurfacePoint, World};
@@ -174,10 +174,10 @@ impl Path {
             if hit.is_dark() {
                 break;
             }
-            let mut bsdf = *Bsdf::before(&hit);
-            bsdf.fill(world, &hit, &walk.ray)?;
-            walk.weight *= walk.inside.left(&bsdf, hit.t);
-            if !walk.slips(&hit, &bsdf) {
+            let mut slot = Slot::uninit();
+            let bsdf = Bsdf::put(&mut slot, world, &hit, &walk.ray)?;
+            walk.weight *= walk.inside.left(bsdf, hit.t);
+            if !walk.slips(&hit, bsdf) {
                 return Ok(walk.weight * bsdf.emitted(world, &hit));
             }
         }
@@ -201,10 +201,10 @@ impl Path {
             return Ok(false);
         };
         walk.sampler.first.meet(&walk.ray, hit);
-        let mut bsdf = *Bsdf::before(hit);
-        bsdf.fill(world, hit, &walk.ray)?;
-        walk.sampler.first.look(&bsdf);
-        let goes_on = self.arrive(world, hit, &bsdf, walk);
+        let mut slot = Slot::uninit();
+        let bsdf = Bsdf::put(&mut slot, world, hit, &walk.ray)?;
+        walk.sampler.first.look(bsdf);
+        let goes_on = self.arrive(world, hit, bsdf, walk);
         walk.sampler.suspect.look(hit.primitive, [walk.sum, walk.weight]);
         goes_on
     }

@@ -18,7 +18,7 @@ use super::medium::Inside;
 use super::sampler::Sampler;
 use super::settings::ResolvedSettings;
 use crate::scene::{Layers, Material, Rgb};
-use crate::world::bsdf::{Bsdf, Scattered};
+use crate::world::bsdf::{Bsdf, Scattered, Slot};
 use crate::world::light::Lights;
 use crate::world::texture::Sampled;
 use crate::world::{Hit, Ray, RayKind, World};
@@ -141,10 +141,9 @@ impl Whitted {
             return Ok(task.weight * task.inside.kept(f64::INFINITY) * self.beyond(&task.ray));
         };
         sampler.first.meet(&task.ray, hit);
-        let mut bsdf = *Bsdf::before(hit);
-        bsdf.fill(world, hit, &task.ray)?;
-        sampler.first.look(&bsdf);
-        let bsdf = &bsdf;
+        let mut slot = Slot::uninit();
+        let bsdf = Bsdf::put(&mut slot, world, hit, &task.ray)?;
+        sampler.first.look(bsdf);
         let mut weight = task.weight * task.inside.left(bsdf, hit.t);
         if bsdf.opacity < 1.0 {
             let past = Task {

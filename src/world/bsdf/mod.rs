@@ -24,6 +24,7 @@ use glam::{DVec2, DVec3};
 use lobes::Ggx;
 pub use scatter::{Bounce, Odds};
 use std::f64::consts::FRAC_1_PI;
+use std::mem::MaybeUninit;
 
 /// A material at a hit, seen along `wo`.
 #[derive(Clone, Copy, Debug)]
@@ -57,6 +58,9 @@ pub struct Bsdf {
     losses: Option<&'static Losses>,
 }
 
+/// Where a material may be [put](Bsdf::put).
+pub type Slot = MaybeUninit<Bsdf>;
+
 /// How the mirror share goes with the angle.
 #[derive(Clone, Copy, Debug)]
 enum Mirror {
@@ -87,23 +91,29 @@ pub struct Scattered {
 impl Bsdf {
     /// The material where a ray met it. The world is only asked where a bump map needs its neighbourhood.
     pub fn at(world: &World, hit: &Hit<'_>, ray: &Ray) -> Sampled<Bsdf> {
-        let mut bsdf = *Bsdf::before(hit);
+        Bsdf::put(&mut Slot::uninit(), world, hit, ray).copied()
+    }
+
+    /// The same in a slot, to be looked at there: a copy of so much just written waits for the writes.
+    #[inline(always)]
+    pub fn put<'p>(slot: &'p mut Slot, world: &World, hit: &Hit<'_>, ray: &Ray) -> Sampled<&'p Bsdf> {
+        let bsdf = slot.write(*Bsdf::before(hit));
         bsdf.fill(world, hit, ray)?;
         Ok(bsdf)
     }
 
-    /// What is known of it whatever the ray and the place are: a copy of it is what [`Bsdf::fill`] begins with.
+    /// What is known of it whatever the ray and the place are.
     #[inline]
-    pub fn before<'w>(hit: &Hit<'w>) -> &'w Bsdf {
+    fn before<'w>(hit: &Hit<'w>) -> &'w Bsdf {
         match &hit.coat.same {
             Same::All(same) => same,
             Same::Matt(_) | Same::No => &Bsdf::BARE,
         }
     }
 
-    /// The same as [`Bsdf::at`] in place of [`Bsdf::before`]: a copy of so much just written waits for the writes.
+    /// What the ray and the place say.
     #[inline]
-    pub fn fill(&mut self, world: &World, hit: &Hit<'_>, ray: &Ray) -> Sampled<()> {
+    fn fill(&mut self, world: &World, hit: &Hit<'_>, ray: &Ray) -> Sampled<()> {
         if let Some(fault) = hit.fault {
             return Err(fault);
         }
