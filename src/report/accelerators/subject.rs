@@ -125,7 +125,8 @@ impl<'m> Subject<'m> {
     }
 
     fn ordered(&self) -> Ordered<'_> {
-        Ordered { corners: &self.corners, vertices: &self.mesh.positions, order: self.tree.order() }
+        let Mesh { triangles, positions, .. } = self.mesh;
+        Ordered { corners: &self.corners, triangles, vertices: positions, order: self.tree.order() }
     }
 
     /// How far a line goes to one triangle; none where it misses that.

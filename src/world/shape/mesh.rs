@@ -93,14 +93,18 @@ impl MeshShape {
     /// The nearest meeting at a distance in (0, limit], or any, and its position in the tree's order; of equally near ones the first triangle.
     #[inline]
     pub fn meet_nearest(&self, ray: &LocalRay, limit: f64, any: bool) -> Option<(usize, Meet)> {
-        let vertices = &*self.mesh.positions;
-        let among = Ordered { corners: &self.corners, vertices, order: self.tree.order() };
-        among.nearest(&self.tree, ray, limit, any)
+        self.ordered().nearest(&self.tree, ray, limit, any)
+    }
+
+    #[inline(always)]
+    fn ordered(&self) -> Ordered<'_> {
+        let Mesh { triangles, positions, .. } = &*self.mesh;
+        Ordered { corners: &self.corners, triangles, vertices: positions, order: self.tree.order() }
     }
 
     #[inline(always)]
     fn corners_at(&self, position: usize) -> [DVec3; 3] {
-        self.corners.at(&self.mesh.positions, position)
+        self.ordered().corners_at(position)
     }
 
     /// Every meeting with t > 0, ascending, ties by triangle: as [`super::Shape::crossings`], with the triangle's number as the face.

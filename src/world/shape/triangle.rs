@@ -98,19 +98,7 @@ impl Sheared {
         limit: f64,
         by_plane: impl FnOnce() -> Option<f64>,
     ) -> Option<Meet> {
-        let determinant = u + v + w;
-        if determinant == 0.0 {
-            return None;
-        }
-        let inverse = 1.0 / determinant;
-        let sum = u * a + v * b + w * c;
-        let mut t = sum * self.shear[2] * inverse;
-        let larger = |a: f64, b: f64| if a > b { a } else { b };
-        let depth = larger(larger(a.abs(), b.abs()), c.abs()) * self.shear[2].abs();
-        if t.abs() <= depth * NEAR {
-            t = by_plane()?;
-        }
-        (t > 0.0 && t <= limit).then_some(Meet { t, a: v * inverse, b: w * inverse, face: 0, part: 0 })
+        meet_inside(self.shear[2], [u, v, w], [a, b, c], limit, by_plane)
     }
 
     /// Whether a triangle that the ray meets also holds the ray moved by (ε, ε²) across its axis, ε as small as it takes. Of two
@@ -120,6 +108,31 @@ impl Sheared {
         let [u, v, w] = [side(c, b), side(a, c), side(b, a)];
         u != 0 && u == v && v == w
     }
+}
+
+/// Where a ray meets a triangle of whose edges it is on these sides, all one or 0, and whose corners lie so deep along its axis; by how far it goes for
+/// one of depth. The distance `by_plane` is rarely asked for.
+#[inline(always)]
+fn meet_inside(
+    per_depth: f64,
+    [u, v, w]: [f64; 3],
+    [a, b, c]: [f64; 3],
+    limit: f64,
+    by_plane: impl FnOnce() -> Option<f64>,
+) -> Option<Meet> {
+    let determinant = u + v + w;
+    if determinant == 0.0 {
+        return None;
+    }
+    let inverse = 1.0 / determinant;
+    let sum = u * a + v * b + w * c;
+    let mut t = sum * per_depth * inverse;
+    let larger = |a: f64, b: f64| if a > b { a } else { b };
+    let depth = larger(larger(a.abs(), b.abs()), c.abs()) * per_depth.abs();
+    if t.abs() <= depth * NEAR {
+        t = by_plane()?;
+    }
+    (t > 0.0 && t <= limit).then_some(Meet { t, a: v * inverse, b: w * inverse, face: 0, part: 0 })
 }
 
 /// From the triangle's plane through its nearest corner, for rays that start on or beside it; none where that is surely behind.

@@ -1,11 +1,13 @@
 //! A ray among triangles that stand in the order of a tree: what it has met so far, leaf by leaf.
 
 #[cfg(target_arch = "x86_64")]
+mod four;
+#[cfg(target_arch = "x86_64")]
 mod walked;
 mod wide;
 
 use super::Sheared;
-use super::leaf::Corners;
+use super::leaf::{AT_ONCE, Corners};
 use crate::world::bvh::Stored;
 use crate::world::shape::{LocalRay, Meet};
 use crate::world::tree::Tree;
@@ -15,15 +17,27 @@ use std::ops::Range;
 /// Triangles in the order of a tree.
 #[derive(Clone, Copy)]
 pub struct Ordered<'m> {
-    /// Their corners.
+    /// Their corners, four by four.
     pub corners: &'m Corners,
-    /// What those may name.
+    /// By number, and what they name.
+    pub triangles: &'m [[u32; 3]],
+    /// See `triangles`.
     pub vertices: &'m [DVec3],
     /// The triangle at each position.
     pub order: &'m [u32],
 }
 
 impl Ordered<'_> {
+    /// The corners of the triangle at a position.
+    #[inline(always)]
+    pub fn corners_at(&self, position: usize) -> [DVec3; 3] {
+        if self.corners.are_exact() {
+            return self.corners.fours[position / AT_ONCE].triangle(position % AT_ONCE);
+        }
+        let [a, b, c] = self.triangles[self.order[position] as usize];
+        [self.vertices[a as usize], self.vertices[b as usize], self.vertices[c as usize]]
+    }
+
     /// The nearest meeting at a distance in (0, limit], or any, and its position in the order of this tree; of equally near ones the first triangle.
     #[inline(always)]
     pub fn nearest(self, tree: &Tree, ray: &LocalRay, limit: f64, any: bool) -> Option<(usize, Meet)> {
@@ -110,11 +124,10 @@ impl<'m> Search<'m> {
     /// The same as a traversal without order asks: whether to go on.
     #[inline(always)]
     pub fn goes_on(&mut self, range: Range<usize>) -> bool {
-        let Ordered { corners, vertices, order } = self.among;
         for position in range {
-            let triangle = corners.at(vertices, position);
+            let triangle = self.among.corners_at(position);
             if let Some(meet) = self.ray.meet(triangle.each_ref(), self.found.limit) {
-                self.found.take(position, meet, order);
+                self.found.take(position, meet, self.among.order);
                 if self.any {
                     return false;
                 }
