@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Times Ogee's rays through meshes beside Embree 3's: one thread and one ray at a time, the same f32 rays, in turn chunk by chunk,
+"""Times Ogee's rays through meshes beside Embree 3's: one thread and one ray at a time, camera rays sixteen at a time besides, the same f32 rays, in turn chunk by chunk,
 so that whatever else the machine does is the same for both. Prints millions of rays a CPU second (of each chunk the fastest round)
 and their ratio; then in how many rays the two differ, and which of them a test of every triangle in f64 agrees with. Judges no speed.
 
@@ -13,7 +13,9 @@ import meshes
 HERE = os.path.dirname(os.path.abspath(__file__))
 ROOT = os.path.dirname(os.path.dirname(HERE))
 WORK = os.path.join(ROOT, "target", "embree")
-SETS = ["primary", "shadow", "bounce", "shuffled"]
+SETS = ["primary", "together", "shadow", "bounce", "shuffled"]
+# What is asked of each; the rays that are asked together are the primary ones.
+ORDERS = {"together": "together", "shadow": "any"}
 CHUNK = 1 << 16
 MOST_JUDGED = 300
 
@@ -78,7 +80,8 @@ def write_rays(name, mesh, view, asker, side):
     camera.tofile(os.path.join(WORK, file("primary")))
     asker.order("closest", file("primary"), 0, len(camera))
     _, triangles, distances = asker.answers(file("primary"))
-    counts = {"primary": len(camera)}
+    camera.tofile(os.path.join(WORK, file("together")))
+    counts = {"primary": len(camera), "together": len(camera)}
     for which, rays in meshes.beyond(view, mesh, camera, triangles, distances).items():
         rays.tofile(os.path.join(WORK, file(which)))
         counts[which] = len(rays)
@@ -98,7 +101,7 @@ def ratios(all, speeds):
 
 def ask(name, which, file, n, all, rounds):
     """Mrays/s of each peer as a row of the table."""
-    order = "any" if which == "shadow" else "closest"
+    order = ORDERS.get(which, "closest")
     best = np.full((len(all), -(-n // CHUNK)), np.inf)
     for _ in range(rounds):
         for chunk in range(best.shape[1]):

@@ -5,6 +5,7 @@
 //
 //   build                     the tree is made anew          answers its bytes, with its leaves and without the mesh's own arrays
 //   closest FILE FIRST COUNT  what some rays meet first      answers `done`
+//   together FILE FIRST COUNT the same, sixteen rays at once  answers `done`
 //   any FILE FIRST COUNT      whether they meet anything     answers `done`
 //   answers FILE OUT          triangles (u32), then distances (f32), of all rays of a file; `done`
 //
@@ -26,7 +27,7 @@ static Set sets[MOST_SETS];
 static ssize_t bytes;
 static RTCDevice device;
 static RTCScene scene;
-static struct RTCIntersectContext context;
+static struct RTCIntersectContext context, coherent;
 
 static void fail(const char *why, const char *of) {
   fprintf(stderr, "%s: %s\n", of, why);
@@ -107,6 +108,30 @@ static void closest(Set *set, size_t first, size_t end) {
   }
 }
 
+enum { AT_ONCE = 16 };
+
+static void together(Set *set, size_t first, size_t end) {
+  for (size_t from = first; from < end; from += AT_ONCE) {
+    size_t n = end - from < AT_ONCE ? end - from : AT_ONCE;
+    int valid[AT_ONCE] __attribute__((aligned(64)));
+    struct RTCRayHit16 asked __attribute__((aligned(64)));
+    for (size_t i = 0; i < AT_ONCE; i++) {
+      const Ray *r = set->rays + from + (i < n ? i : 0);
+      valid[i] = i < n ? -1 : 0;
+      asked.ray.org_x[i] = r->x, asked.ray.org_y[i] = r->y, asked.ray.org_z[i] = r->z;
+      asked.ray.dir_x[i] = r->dx, asked.ray.dir_y[i] = r->dy, asked.ray.dir_z[i] = r->dz;
+      asked.ray.tnear[i] = 0, asked.ray.tfar[i] = r->t_max, asked.ray.mask[i] = -1;
+      asked.ray.time[i] = 0, asked.ray.id[i] = 0, asked.ray.flags[i] = 0;
+      asked.hit.geomID[i] = asked.hit.primID[i] = asked.hit.instID[0][i] = NONE;
+    }
+    rtcIntersect16(valid, scene, &coherent, &asked);
+    for (size_t i = 0; i < n; i++) {
+      set->triangles[from + i] = asked.hit.primID[i];
+      set->distances[from + i] = asked.hit.primID[i] == NONE ? INFINITY : asked.ray.tfar[i];
+    }
+  }
+}
+
 static void any(Set *set, size_t first, size_t end) {
   for (size_t i = first; i < end; i++) {
     struct RTCRay asked = ray_of(set->rays + i);
@@ -132,6 +157,8 @@ int main(int n_words, char **words) {
   if (!device) fail("makes no device", config);
   rtcSetDeviceMemoryMonitorFunction(device, count_bytes, NULL);
   rtcInitIntersectContext(&context);
+  rtcInitIntersectContext(&coherent);
+  coherent.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
   read_mesh(words[1]);
   build(robust);
   char line[1024], order[16], file[256], out[256];
@@ -146,7 +173,7 @@ int main(int n_words, char **words) {
     } else if (sscanf(line, "%15s %255s %zu %zu", order, file, &from, &count) == 4) {
       Set *set = set_of(file);
       size_t end = from + count < set->n ? from + count : set->n;
-      (strcmp(order, "any") ? closest : any)(set, from, end);
+      (!strcmp(order, "any") ? any : !strcmp(order, "together") ? together : closest)(set, from, end);
       puts("done");
     } else fail("is no order", line);
     fflush(stdout);

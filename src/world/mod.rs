@@ -12,12 +12,14 @@ mod emitter;
 #[cfg(test)]
 mod even;
 mod every;
+mod find;
 mod footprint;
 mod hit;
 pub mod kdtree;
 mod kept;
 pub mod light;
 pub mod lower;
+pub mod packet;
 mod place;
 mod query;
 pub mod shape;
@@ -26,6 +28,7 @@ pub mod texture;
 pub mod tree;
 
 pub use emitter::{Emitter, EmitterShape, PlacedLight};
+pub use find::Found;
 pub use footprint::Footprint;
 pub use hit::{Hit, SurfacePoint};
 pub use kept::Kept;

@@ -1,9 +1,11 @@
 //! Rays through aggregates and their placements.
 
+pub(super) mod packet;
+
 use super::aggregate::{Aggregate, Group, Item, MeshAggregate};
 use super::bvh::Stored;
 use super::shape::{Csg, LocalRay, Meet, Shape};
-use super::{PrimitiveId, RayKind, World};
+use super::{Found, PrimitiveId, RayKind, World};
 use crate::scene::Hide;
 use std::ops::Range;
 
@@ -20,6 +22,7 @@ pub(super) struct Candidate {
 }
 
 /// What is asked of a ray.
+#[derive(Clone, Copy)]
 pub(super) struct Query<'w> {
     world: &'w World,
     kind: RayKind,
@@ -27,7 +30,7 @@ pub(super) struct Query<'w> {
     any: bool,
     /// Largest distance that counts, in the world's units.
     limit: f64,
-    found: Option<Candidate>,
+    found: Found,
 }
 
 /// A ray in an aggregate's space, and where that space stands.
@@ -52,7 +55,7 @@ impl<'r> Local<'r> {
 
 impl<'w> Query<'w> {
     /// The nearest meeting with a distance in (0, limit], or any; ties go to the smaller id, whatever the tree.
-    #[inline]
+    #[inline(always)]
     pub fn run(
         world: &'w World,
         ray: &LocalRay,
@@ -61,9 +64,9 @@ impl<'w> Query<'w> {
         kind: RayKind,
         any: bool,
     ) -> Option<Candidate> {
-        let mut query = Query { world, kind, any, limit, found: None };
+        let mut query = Query { world, kind, any, limit, found: Found(None) };
         query.visit(&world.aggregates[0], &Local::new(ray, per_world, 0));
-        query.found
+        query.found.0
     }
 
     #[inline(always)]
@@ -90,7 +93,7 @@ impl<'w> Query<'w> {
         self.each(group, local, |query, range| {
             for position in range {
                 query.visit_position(group, position, local);
-                if query.any && query.found.is_some() {
+                if query.any && query.found.0.is_some() {
                     break;
                 }
             }
@@ -122,7 +125,7 @@ impl<'w> Query<'w> {
         if self.any {
             tree.traverse_any(origin, direction, limit, stored, |range| {
                 test(self, range);
-                self.found.is_none()
+                self.found.0.is_none()
             });
         } else {
             tree.traverse(origin, direction, limit, stored, |range, _| {
@@ -184,10 +187,10 @@ impl<'w> Query<'w> {
     #[inline]
     fn offer(&mut self, id: PrimitiveId, position: u32, meet: Meet, local: &Local<'_>) {
         let t = meet.t * local.world_per;
-        let better = self.found.is_none_or(|best| t < best.t || (t == best.t && id < best.id));
+        let better = self.found.0.is_none_or(|best| t < best.t || (t == best.t && id < best.id));
         if better && t <= self.limit {
             self.limit = t;
-            self.found = Some(Candidate { t, id, position, meet });
+            self.found.0 = Some(Candidate { t, id, position, meet });
         }
     }
 }

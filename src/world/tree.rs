@@ -3,8 +3,9 @@
 #[cfg(test)]
 pub(super) mod tests;
 
-use super::bvh::{self, Stored};
+use super::bvh::{self, Limits, Stored};
 use super::kdtree;
+use super::packet::{Members, Packet, RAYS};
 use crate::math::Aabb;
 use crate::scene::Accelerator;
 use glam::DVec3;
@@ -98,6 +99,22 @@ impl Tree {
         match self {
             Tree::Bvh(tree) => tree.traverse(origin, direction, t_max, stored, leaf),
             Tree::KdTree(tree) => tree.traverse(*origin, *direction, t_max, leaf),
+        }
+    }
+
+    /// As [`Tree::traverse`] for rays from one point and a limit for each, negative for those that are no members: `leaf` is told for which of them a
+    /// range is, and lowers their limits. None where each must go alone; then nothing was offered.
+    #[inline(always)]
+    pub(super) fn traverse_each(
+        &self,
+        rays: (&Packet, Members),
+        limits: &[f64; RAYS],
+        stored: Stored,
+        leaf: impl FnMut(Range<usize>, Members, &mut Limits),
+    ) -> Option<()> {
+        match self {
+            Tree::Bvh(tree) => tree.traverse_each(rays, limits, stored, leaf),
+            Tree::KdTree(_) => None,
         }
     }
 

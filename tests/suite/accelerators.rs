@@ -151,8 +151,13 @@ fn rays_in_files_are_asked_answered_and_judged_order_by_order() {
     let rays = [[0.2, 0.2, -1.0, 0.0, 0.0, 2.0, 9.0], [0.8, 0.8, -1.0, 0.0, 0.0, 2.0, 9.0f32]];
     write("two.rays", &rays.concat().iter().map(|number| number.to_bits()).collect::<Vec<_>>());
     write("other", &[1, u32::MAX, 0, 0]);
-    let orders = "build\nclosest two.rays 0 99\nanswers two.rays ours\njudge two.rays other 9\n";
-    let run = folder.ogee_fed("bench rays mesh.obj", orders);
+    let asked_by = |how: &str| {
+        let orders =
+            format!("build\n{how} two.rays 0 99\nanswers two.rays ours-{how}\njudge two.rays other 9\n");
+        folder.ogee_fed("bench rays mesh.obj", &orders)
+    };
+    assert_eq!(asked_by("together").code, Some(0));
+    let run = asked_by("closest");
     let said: Vec<String> = String::from_utf8_lossy(&run.stdout).lines().map(str::to_owned).collect();
     assert!(
         said.len() == 4 && said[0].parse::<usize>().is_ok_and(|bytes| bytes > 0),
@@ -160,7 +165,8 @@ fn rays_in_files_are_asked_answered_and_judged_order_by_order() {
         run.stderr
     );
     assert_eq!(said[1..], ["done", "done", "0 0 1 1 1 0"]);
-    let ours = std::fs::read(folder.path().join("ours")).expect("the answers");
+    let ours = std::fs::read(folder.path().join("ours-closest")).expect("the answers");
+    assert_eq!(folder.read("ours-together"), ours);
     let words: Vec<u32> = ours.as_chunks::<4>().0.iter().map(|bytes| u32::from_le_bytes(*bytes)).collect();
     assert_eq!(words, [0, u32::MAX, 0.5f32.to_bits(), f32::INFINITY.to_bits()]);
     assert_eq!(folder.ogee_fed("bench rays mesh.obj", "sing\n").code, Some(2));

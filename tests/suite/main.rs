@@ -19,6 +19,7 @@ mod layers;
 mod meshes;
 mod models;
 mod outlines;
+mod packets;
 mod paths;
 mod photons;
 mod pictures;

@@ -41,6 +41,14 @@ pub fn widen_4(lanes: &[f32; 4]) -> __m256d {
     _mm256_cvtps_pd(unsafe { _mm_loadu_ps(lanes.as_ptr()) })
 }
 
+/// Eight numbers as single precision, rounded to the nearest, in a register.
+#[target_feature(enable = "avx")]
+#[inline]
+pub fn narrow_8(lanes: &[f64; 8]) -> __m256 {
+    let (fours, _) = lanes.as_chunks::<4>();
+    _mm256_set_m128(_mm256_cvtpd_ps(load_4(&fours[1])), _mm256_cvtpd_ps(load_4(&fours[0])))
+}
+
 /// Eight numbers of single precision in a register.
 #[target_feature(enable = "avx")]
 #[inline]

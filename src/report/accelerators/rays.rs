@@ -2,6 +2,7 @@
 //! programs holds it for all of them.
 
 use super::subject::{Line, Subject};
+use crate::world::packet::RAYS;
 use glam::Vec3;
 use std::ops::Range;
 
@@ -61,6 +62,14 @@ impl RaySet {
     pub fn ask(&mut self, subject: &Subject<'_>, some: Range<usize>) {
         for (ray, answer) in self.rays[some.clone()].iter().zip(&mut self.answers[some]) {
             *answer = subject.meet(ray, self.any).map(|(t, triangle)| (t as f32, triangle));
+        }
+    }
+
+    /// Asks some of them what they meet first, as many together as a packet has.
+    pub fn ask_together(&mut self, subject: &Subject<'_>, some: Range<usize>) {
+        let answers = self.answers[some.clone()].chunks_mut(RAYS);
+        for (rays, answers) in self.rays[some].chunks(RAYS).zip(answers) {
+            subject.meet_each(rays, |i, met| answers[i] = met.map(|(t, triangle)| (t as f32, triangle)));
         }
     }
 

@@ -3,6 +3,7 @@
 use crate::geometry::mesh::Mesh;
 use crate::math::Aabb;
 use crate::scene::Accelerator;
+use crate::world::packet::{Packet, RAYS};
 use crate::world::shape::LocalRay;
 use crate::world::shape::triangle::search::{Ordered, Search};
 use crate::world::shape::triangle::{Sheared, cut::cut, leaf};
@@ -122,6 +123,26 @@ impl<'m> Subject<'m> {
         let Local { ray, per_line, limit } = Local::new(line)?;
         let met = self.ordered().nearest(&self.tree, &ray, limit, any);
         met.map(|(place, meet)| (meet.t / per_line, self.tree.order()[place]))
+    }
+
+    /// The nearest meetings of lines, no more than a packet has rays, as [`Subject::meet`] finds each.
+    #[inline]
+    pub fn meet_each(&self, lines: &[Line], mut tell: impl FnMut(usize, Option<(f64, u32)>)) {
+        let (mut per_line, mut limits) = ([1.0; RAYS], [-1.0; RAYS]);
+        let packet = Packet::new(|i| {
+            let local = Local::new(lines.get(i)?)?;
+            (per_line[i], limits[i]) = (local.per_line, local.limit);
+            Some(local.ray)
+        });
+        let Some(packet) = packet else {
+            lines.iter().enumerate().for_each(|(i, line)| tell(i, self.meet(line, false)));
+            return;
+        };
+        let order = self.tree.order();
+        (0..lines.len()).for_each(|i| tell(i, None));
+        self.ordered().nearest_each(&self.tree, (&packet, packet.members), &limits, |i, at, meet| {
+            tell(i, Some((meet.t / per_line[i], order[at])));
+        });
     }
 
     fn ordered(&self) -> Ordered<'_> {

@@ -13,7 +13,7 @@ pub(super) mod survey;
 mod tests;
 mod traverse;
 
-pub(in crate::world) use traverse::fetch_entry;
+pub(in crate::world) use traverse::{Limits, fetch_entry};
 pub use traverse::{Stored, clip};
 
 use crate::math::Aabb;

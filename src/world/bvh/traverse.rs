@@ -1,15 +1,14 @@
-//! The one traversal: nearest boxes first, for closest hits and for any hit.
-//!
-//! Rays go one by one. Camera rays in packets would save a part of the walk alone, which is a fifth of the time of a picture without second
-//! rays of 82 thousand triangles (the tests of triangles are a seventh), and less of every other picture.
+//! The one traversal: nearest boxes first, for closest hits and for any hit, ray by ray, or for rays from one point together (`packet`).
 
 mod counting;
 mod entry;
 mod fetch;
+mod packet;
 mod wide;
 
 pub use fetch::Stored;
 pub(in crate::world) use fetch::fetch_entry;
+pub(in crate::world) use packet::Limits;
 
 use super::{Child, Node, Tree, WIDTH};
 use crate::math::Aabb;

@@ -7,6 +7,7 @@ use super::{LocalRay, Meet, Surface};
 use crate::geometry::mesh::Mesh;
 use crate::geometry::skin::Influences;
 use crate::scene::{Accelerator, Armature};
+use crate::world::packet::{Members, Packet, RAYS};
 use crate::world::tree::Tree;
 use glam::DVec3;
 use std::sync::Arc;
@@ -94,6 +95,18 @@ impl MeshShape {
     #[inline]
     pub fn meet_nearest(&self, ray: &LocalRay, limit: f64, any: bool) -> Option<(usize, Meet)> {
         self.ordered().nearest(&self.tree, ray, limit, any)
+    }
+
+    /// The nearest meetings of rays from one point, each as [`MeshShape::meet_nearest`] finds it within its limit: the ray's number, position and
+    /// meeting. Limits of those that are no members are negative.
+    #[inline]
+    pub fn meet_nearest_each(
+        &self,
+        rays: (&Packet, Members),
+        limits: &[f64; RAYS],
+        tell: impl FnMut(usize, usize, Meet),
+    ) {
+        self.ordered().nearest_each(&self.tree, rays, limits, tell);
     }
 
     #[inline(always)]

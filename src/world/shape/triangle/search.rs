@@ -3,12 +3,15 @@
 #[cfg(target_arch = "x86_64")]
 mod four;
 #[cfg(target_arch = "x86_64")]
+mod packet;
+#[cfg(target_arch = "x86_64")]
 mod walked;
 mod wide;
 
 use super::Sheared;
 use super::leaf::{AT_ONCE, Corners};
 use crate::world::bvh::Stored;
+use crate::world::packet::{Members, Packet, RAYS};
 use crate::world::shape::{LocalRay, Meet};
 use crate::world::tree::Tree;
 use glam::DVec3;
@@ -42,6 +45,32 @@ impl Ordered<'_> {
     #[inline(always)]
     pub fn nearest(self, tree: &Tree, ray: &LocalRay, limit: f64, any: bool) -> Option<(usize, Meet)> {
         wide::nearest(self, tree, ray, limit, any)
+    }
+
+    /// The nearest meetings of rays from one point, each as [`Ordered::nearest`] finds it within its limit, by number.
+    #[inline]
+    pub fn nearest_each(
+        self,
+        tree: &Tree,
+        (packet, members): (&Packet, Members),
+        limits: &[f64; RAYS],
+        mut tell: impl FnMut(usize, usize, Meet),
+    ) {
+        let mut found = [Found::nothing(0.0); RAYS];
+        found.iter_mut().zip(limits).for_each(|(found, limit)| found.limit = *limit);
+        if wide::nearest_each(self, tree, (packet, members), limits, &mut found).is_none() {
+            for i in members {
+                if let Some((at, meet)) = self.nearest(tree, &packet.ray(i), limits[i], false) {
+                    tell(i, at, meet);
+                }
+            }
+            return;
+        }
+        for i in members {
+            if let Some((at, meet)) = found[i].get() {
+                tell(i, at, meet);
+            }
+        }
     }
 
     /// The same one number at a time.

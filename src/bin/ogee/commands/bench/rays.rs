@@ -5,7 +5,8 @@
 //! |---|---|---|
 //! | `build` | the tree is made anew | its bytes, with those of its leaves |
 //! | `closest FILE FIRST COUNT` | so many rays of a file from one on are asked what they meet first | `done` |
-//! | `any FILE FIRST COUNT` | the same, whether anything | `done` |
+//! | `together FILE FIRST COUNT` | the same, as many rays at once as a packet has | `done` |
+//! | `any FILE FIRST COUNT` | the same as of the first, whether anything | `done` |
 //! | `answers FILE OUT` | for each ray the triangle met (u32, of none all bits) is written, then each distance (f32) | `done` |
 //! | `judge FILE OTHER MOST` | answers of another program, as `answers` writes them, are compared | the numbers of a `Verdict` |
 //!
@@ -67,7 +68,7 @@ impl Desk<'_> {
                 self.subject = Subject::new(self.mesh, self.builder);
                 Ok(self.subject.bytes().iter().sum::<usize>().to_string())
             }
-            [how @ ("closest" | "any"), file, first, count] => {
+            [how @ ("closest" | "together" | "any"), file, first, count] => {
                 let (first, count) = (number(first)?, number(count)?);
                 if !self.sets.contains_key(*file) {
                     self.sets.insert((*file).into(), RaySet::new(&read(file)?, *how == "any"));
@@ -75,7 +76,11 @@ impl Desk<'_> {
                 let set = self.sets.get_mut(*file).expect("it has just been read");
                 set.any = *how == "any";
                 let first = first.min(set.len());
-                set.ask(&self.subject, first..first.saturating_add(count).min(set.len()));
+                let some = first..first.saturating_add(count).min(set.len());
+                match *how {
+                    "together" => set.ask_together(&self.subject, some),
+                    _ => set.ask(&self.subject, some),
+                }
                 Ok("done".into())
             }
             ["answers", file, out] => {

@@ -1,7 +1,8 @@
 //! The search with four triangles in the lanes of an instruction, where the processor has such: compiled as one with the traversal around it. One of the
 //! rooms with unsafe code: there is no other way to such instructions.
 
-use super::Ordered;
+use super::{Found, Ordered};
+use crate::world::packet::{Members, Packet, RAYS};
 use crate::world::shape::{LocalRay, Meet};
 use crate::world::tree::Tree;
 
@@ -52,9 +53,34 @@ fn nearest_otherwise(
     among.nearest_plain(tree, ray, limit, any)
 }
 
+/// See [`Ordered::nearest_each`]; none where rays go alone.
+#[inline(always)]
+pub(super) fn nearest_each(
+    among: Ordered,
+    tree: &Tree,
+    rays: (&Packet, Members),
+    limits: &[f64; RAYS],
+    found: &mut [Found; RAYS],
+) -> Option<()> {
+    #[cfg(target_arch = "x86_64")]
+    if crate::math::vectors::has_v3()
+        && let Tree::Bvh(tree) = tree
+        && tree.is_whole()
+    {
+        // SAFETY: the processor has just been found to have what the function is compiled for.
+        #[allow(unsafe_code, reason = "code for instructions that not every processor has")]
+        return unsafe {
+            match among.corners.are_exact() {
+                true => super::packet::nearest::<true>(&among, tree, rays, limits, found),
+                false => super::packet::nearest::<false>(&among, tree, rays, limits, found),
+            }
+        };
+    }
+    None
+}
+
 #[cfg(target_arch = "x86_64")]
 mod x86 {
-    use super::super::Found;
     use super::super::four::{FromStart, Start};
     use super::super::walked::Walked;
     use super::*;
