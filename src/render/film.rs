@@ -183,11 +183,15 @@ impl Report {
     }
 }
 
+/// What pixels are sorted by.
+pub(super) fn reading_order([x, y]: [u32; 2]) -> (u32, u32) {
+    (y, x)
+}
+
 impl Fault {
     /// Both as one: counts added, the first pixel in reading order.
     fn with(self, other: Fault) -> Fault {
-        let order = |f: &Fault| (f.pixel[1], f.pixel[0]);
-        let first = if order(&other) < order(&self) { other } else { self };
+        let first = if reading_order(other.pixel) < reading_order(self.pixel) { other } else { self };
         Fault { count: self.count + other.count, ..first }
     }
 }

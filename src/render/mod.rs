@@ -1,17 +1,18 @@
 //! Pictures: rays from a camera, radiance by a tracer, sums on a film, files on disk.
 
 use crate::scene::{Rgb, TracerKind};
-use crate::world::{Ray, World};
+use crate::world::{Found, Ray, World};
 
 /// A way to find the radiance that arrives along a ray. Made by its constructor from a world, so that what it must prepare
 /// (a photon map, a cache) cannot be missing.
 pub trait Tracer: Sync {
-    /// Radiance along a camera ray, linear RGB. Called once per camera sample. What the ray meets first is told to the sampler.
-    fn radiance(&self, world: &World, ray: Ray, sampler: &mut sampler::Sampler) -> Rgb;
+    /// Radiance along a camera ray, of which it has been found what it meets first, linear RGB. Called once per camera sample. What the ray meets first is told
+    /// to the sampler.
+    fn radiance(&self, world: &World, ray: &Ray, found: &Found, sampler: &mut sampler::Sampler) -> Rgb;
 
     /// The part of it that what is seen emits by itself. [`Tracer::radiance`] leaves it out where the sampler says that it is found
     /// [by others](sampler::Sampler::emission_rays).
-    fn emission(&self, _world: &World, _ray: Ray, _sampler: &mut sampler::Sampler) -> Rgb {
+    fn emission(&self, _: &World, _ray: &Ray, _found: &Found, _: &mut sampler::Sampler) -> Rgb {
         Rgb::ZERO
     }
 
@@ -40,6 +41,7 @@ pub trait Tracer: Sync {
 pub use outline::Outlines;
 
 pub mod adaptive;
+mod block;
 pub mod camera;
 pub mod compare;
 pub mod denoise;

@@ -17,6 +17,7 @@ use super::tiles::{Picture, on_threads};
 use crate::math::elementary::exp2;
 use crate::scene::{Rgb, Texture};
 use crate::world::light::{Ball, Targets};
+use crate::world::packet::RAYS as RAYS_AT_ONCE;
 use crate::world::{Ray, RayKind, World};
 use glam::DVec2;
 use rayon::prelude::*;
@@ -106,9 +107,11 @@ fn rays_of_samples(picture: Picture<'_>, pixel: [u32; 2], counts: &mut RayCounts
     let [x, y] = pixel;
     let mut sampler = Sampler::new(picture.settings.seed, x, y | rows::OUTLINE, 0);
     let rays = Rays::of(picture, pixel, PROBES, &mut sampler);
-    let probes = (0..PROBES).map(|i| rays.emission(i, SPREAD, &mut sampler).max_element());
-    let [darkest, brightest] =
-        probes.fold([f64::INFINITY, 0.0], |[least, most], x| [x.min(least), x.max(most)]);
+    let [mut darkest, mut brightest] = [f64::INFINITY, 0.0f64];
+    rays.each_emission(SPREAD, &mut sampler, |emitted| {
+        let x = emitted.max_element();
+        (darkest, brightest) = (x.min(darkest), x.max(brightest));
+    });
     *counts += sampler.rays;
     let contrast = (brightest - darkest) / white(picture.settings);
     // Of n rays the variance is the nth part of that of one.
@@ -143,11 +146,10 @@ pub fn emission(picture: Picture<'_>, pixel: [u32; 2], sampler: &mut Sampler) ->
 fn emission_by(n: u32, picture: Picture<'_>, pixel: [u32; 2], sampler: &mut Sampler) -> Emission {
     let mut found = Emission::NOTHING;
     let rays = Rays::of(picture, pixel, n, sampler);
-    for i in 0..n {
-        let emitted = rays.emission(i, 1.0, sampler);
+    rays.each_emission(1.0, sampler, |emitted| {
         found.all += emitted;
         found.left += picture.settings.clamp.map_or(emitted, |most| dimmed(most, emitted));
-    }
+    });
     let share = 1.0 / f64::from(n);
     Emission { all: found.all * share, left: found.left * share }
 }
@@ -167,13 +169,23 @@ impl Rays<'_> {
         Rays { picture, centre, n, places, lens: sampler.next_set_if(picture.view.has_lens()) }
     }
 
-    /// What is seen to emit along one of them, where they are spread so many times as wide as the pixel's filter.
-    fn emission(&self, i: u32, spread: f64, sampler: &mut Sampler) -> Rgb {
-        let Picture { world, view, tracer, settings } = self.picture;
+    /// What is seen to emit along each of them, where they are spread so many times as wide as the pixel's filter.
+    fn each_emission(&self, spread: f64, sampler: &mut Sampler, mut tell: impl FnMut(Rgb)) {
+        let Picture { world, tracer, .. } = self.picture;
+        for first in (0..self.n).step_by(RAYS_AT_ONCE) {
+            let ray = |i: u32| if i < self.n { self.ray(i, spread) } else { None };
+            let rays = std::array::from_fn(|i| ray(first + i as u32));
+            let mut emitted = [Rgb::ZERO; RAYS_AT_ONCE];
+            world.find_each(&rays, |i, ray, found| emitted[i] = tracer.emission(world, ray, found, sampler));
+            emitted.into_iter().take((self.n - first) as usize).for_each(&mut tell);
+        }
+    }
+
+    fn ray(&self, i: u32, spread: f64) -> Option<Ray> {
+        let Picture { view, settings, .. } = self.picture;
         let off = filter::place(settings.filter, self.places.point(i, self.n)) - 0.5;
         let lens = self.lens.map_or(DVec2::ZERO, |lens| lens.point(i, self.n));
-        let ray = view.ray(self.centre + off * spread, lens);
-        ray.map_or(Rgb::ZERO, |ray| tracer.emission(world, ray, sampler))
+        view.ray(self.centre + off * spread, lens)
     }
 }
 

@@ -27,7 +27,7 @@ use crate::scene::{Material, Rgb};
 use crate::world::bsdf::{Bsdf, Odds, Slot};
 use crate::world::light::{Choice, Lights};
 use crate::world::texture::Sampled;
-use crate::world::{Hit, Ray, SurfacePoint, World};
+use crate::world::{Found, Hit, Ray, SurfacePoint, World};
 pub(super) use gather::Matt;
 use glam::{DVec2, DVec3};
 use roulette::Roulette;
@@ -131,21 +131,28 @@ impl Path {
 }
 
 impl Tracer for Path {
-    fn radiance(&self, world: &World, ray: Ray, sampler: &mut Sampler) -> Rgb {
+    fn radiance(&self, world: &World, ray: &Ray, found: &Found, sampler: &mut Sampler) -> Rgb {
         sampler.rays.camera += 1;
         let stage = if self.photons.is_some() { Stage::Seen } else { Stage::Whole };
         let mut walk =
-            Walk { branches: self.branches, stage, ..Walk::from_camera(ray, &self.roulette, sampler) };
-        if let Err(fault) = self.trace(world, &mut walk) {
+            Walk { branches: self.branches, stage, ..Walk::from_camera(*ray, &self.roulette, sampler) };
+        let traced =
+            self.come_to(world, world.hit(ray, found).as_ref(), &mut walk).and_then(
+                |goes_on| match goes_on {
+                    true => self.trace(world, &mut walk),
+                    false => Ok(()),
+                },
+            );
+        if let Err(fault) = traced {
             walk.sampler.undefined = Some(fault);
         }
         walk.sum
     }
 
-    fn emission(&self, world: &World, ray: Ray, sampler: &mut Sampler) -> Rgb {
+    fn emission(&self, world: &World, ray: &Ray, found: &Found, sampler: &mut Sampler) -> Rgb {
         sampler.rays.camera += 1;
-        let mut walk = Walk::from_camera(ray, &self.roulette, sampler);
-        self.seen_emission(world, &mut walk).unwrap_or_else(|fault| {
+        let mut walk = Walk::from_camera(*ray, &self.roulette, sampler);
+        self.seen_emission(world, found, &mut walk).unwrap_or_else(|fault| {
             walk.sampler.undefined = Some(fault);
             Rgb::ZERO
         })
@@ -169,8 +176,10 @@ impl Tracer for Path {
 
 impl Path {
     /// What the surface at the end of a path's first segment sends out by itself.
-    fn seen_emission(&self, world: &World, walk: &mut Walk<'_>) -> Sampled<Rgb> {
-        while let Some(hit) = world.closest(&walk.ray) {
+    fn seen_emission(&self, world: &World, found: &Found, walk: &mut Walk<'_>) -> Sampled<Rgb> {
+        let mut next;
+        let mut found = found;
+        while let Some(hit) = world.hit(&walk.ray, found) {
             if hit.is_dark() {
                 break;
             }
@@ -180,6 +189,8 @@ impl Path {
             if !walk.slips(&hit, bsdf) {
                 return Ok(walk.weight * bsdf.emitted(world, &hit));
             }
+            next = world.find(&walk.ray);
+            found = &next;
         }
         Ok(Rgb::ZERO)
     }
@@ -193,8 +204,14 @@ impl Path {
     /// Takes a path to the end of its ray and aims it anew. False where it ends.
     fn follow(&self, world: &World, walk: &mut Walk<'_>) -> Sampled<bool> {
         // A hit and what it is made of are many numbers: they are looked at where they were written.
-        let found = world.closest(&walk.ray);
-        let Some(hit) = &found else {
+        let met = world.closest(&walk.ray);
+        self.come_to(world, met.as_ref(), walk)
+    }
+
+    /// The same where it is known what its ray meets.
+    #[inline]
+    fn come_to(&self, world: &World, met: Option<&Hit<'_>>, walk: &mut Walk<'_>) -> Sampled<bool> {
+        let Some(hit) = met else {
             if !walk.stage.is_covered() {
                 walk.sum += walk.weight * walk.inside.kept(f64::INFINITY) * self.beyond(walk);
             }

@@ -4,17 +4,19 @@
 use super::adaptive::Blocks;
 use super::camera::View;
 use super::features::FeatureSum;
-use super::film::{Fault, Film, PixelSum, Report, dimmed};
+use super::film::{Fault, Film, PixelSum, Report, dimmed, reading_order};
 use super::filter;
 use super::outline::{self, Emission};
 use super::sampler::Sampler;
 use super::settings::ResolvedSettings;
 use super::tiles::Picture;
 use crate::scene::Rgb;
-use crate::world::Ray;
 use crate::world::texture::TextureFault;
+use crate::world::{Found, Ray};
 use glam::DVec2;
-use std::sync::atomic::{AtomicBool, Ordering};
+
+/// A camera ray, and what it meets first.
+type Sight<'s> = (&'s Ray, &'s Found);
 
 /// The samples of a pixel so far.
 #[derive(Clone, Debug)]
@@ -43,23 +45,14 @@ impl Pixel {
         Pixel { place, sum, taken: 0, enough: false, blocks, emission_rays: None, undefined: None, features }
     }
 
-    /// Takes the samples up to number `to`, or until the error is as small as the settings ask for; false where that was cancelled.
-    pub fn advance(
-        &mut self,
-        picture: Picture<'_>,
-        to: u32,
-        report: &mut Report,
-        cancel: &AtomicBool,
-    ) -> bool {
-        let mut sampler = self.sampler(picture, report);
-        while self.taken < to && !self.enough {
-            if cancel.load(Ordering::Relaxed) {
-                return false;
-            }
-            let radiance = self.take(picture, &mut sampler, report);
-            self.weigh(radiance, picture.settings);
-        }
-        true
+    /// Its column and row in the whole picture.
+    pub fn place(&self) -> [u32; 2] {
+        self.place
+    }
+
+    /// True where it is to have the samples up to number `to`, and has neither them nor enough.
+    pub fn is_open(&self, to: u32) -> bool {
+        self.taken < to && !self.enough
     }
 
     /// Finds whether the error is small enough, with one sample more.
@@ -70,7 +63,7 @@ impl Pixel {
     }
 
     /// The numbers of the next sample.
-    fn sampler(&mut self, picture: Picture<'_>, report: &mut Report) -> Sampler {
+    pub fn sampler(&mut self, picture: Picture<'_>, report: &mut Report) -> Sampler {
         let ([x, y], settings) = (self.place, picture.settings);
         let rays = || outline::rays(picture, self.place, &mut report.rays);
         let mut sampler =
@@ -79,9 +72,21 @@ impl Pixel {
         sampler.asking(settings.kept().look())
     }
 
-    /// Takes the next sample by its numbers, and turns them to the one after it.
-    fn take(&mut self, picture: Picture<'_>, sampler: &mut Sampler, report: &mut Report) -> Rgb {
-        let (emission, found) = traced(picture, self.place, sampler);
+    /// The ray of the next sample, by its first numbers; none where the projection shows nothing.
+    pub fn ray(&self, picture: Picture<'_>, sampler: &mut Sampler) -> Option<Ray> {
+        camera_ray(picture, self.place, sampler)
+    }
+
+    /// Takes the next sample, by its ray and what that meets if it has one, and by the rest of its numbers, and turns them to the one after it. Finds whether the
+    /// error is small enough then.
+    pub fn take(
+        &mut self,
+        picture: Picture<'_>,
+        sight: Option<Sight<'_>>,
+        sampler: &mut Sampler,
+        report: &mut Report,
+    ) {
+        let (emission, found) = traced(picture, self.place, sight, sampler);
         let radiance = match picture.settings.clamp {
             Some(most) => {
                 let left = emission.left + dimmed(most, found);
@@ -104,7 +109,7 @@ impl Pixel {
         report.rays += sampler.rays;
         sampler.restart();
         self.taken += 1;
-        radiance
+        self.weigh(radiance, picture.settings);
     }
 
     /// The mean radiance; magenta, which is told, where a function was undefined.
@@ -116,11 +121,16 @@ impl Pixel {
     }
 }
 
-/// What rays for outlines find of a sample, and what its own ray does.
-fn traced(picture: Picture<'_>, place: [u32; 2], sampler: &mut Sampler) -> (Emission, Rgb) {
-    let ray = camera_ray(picture, place, sampler);
+/// What rays for outlines find of a sample, and what its own ray does if there is one.
+fn traced(
+    picture: Picture<'_>,
+    place: [u32; 2],
+    sight: Option<Sight<'_>>,
+    sampler: &mut Sampler,
+) -> (Emission, Rgb) {
     let emission = outline::emission(picture, place, sampler);
-    (emission, ray.map_or(Rgb::ZERO, |ray| picture.tracer.radiance(picture.world, ray, sampler)))
+    let Picture { world, tracer, .. } = picture;
+    (emission, sight.map_or(Rgb::ZERO, |(ray, found)| tracer.radiance(world, ray, found, sampler)))
 }
 
 /// The ray of a sample: through the pixel's centre for the only one, else through a point that its filter chooses.
@@ -153,17 +163,23 @@ pub(super) fn ray_through(view: &View, place: DVec2, sampler: &mut Sampler) -> O
 /// Counts a sample that was not finite, and finds out whose fault the first was by tracing it again.
 fn note_non_finite(picture: Picture<'_>, pixel: [u32; 2], sampler: &Sampler, report: &mut Report) {
     report.non_finite += 1;
+    let before = report.first_non_finite;
     if let Some(first) = &mut report.first_non_finite {
         first.count += 1;
+    }
+    let is_first = before.is_none_or(|first| reading_order(pixel) < reading_order(first.pixel));
+    if !is_first {
         return;
     }
     let suspect = |emission_rays| {
         let mut again = sampler.accusing(emission_rays);
-        traced(picture, pixel, &mut again);
+        let sight = camera_ray(picture, pixel, &mut again).map(|ray| (ray, picture.world.find(&ray)));
+        traced(picture, pixel, sight.as_ref().map(|(ray, found)| (ray, found)), &mut again);
         again.suspect.found()
     };
     // What is seen to emit may have been found by other rays.
     let found = suspect(sampler.emission_rays).or_else(|| suspect(0));
     let provenance = found.and_then(|primitive| picture.world.provenance(primitive));
-    report.first_non_finite = Some(Fault { pixel, count: 1, span: provenance.map(|p| p.span), kind: None });
+    let count = 1 + before.map_or(0, |first| first.count);
+    report.first_non_finite = Some(Fault { pixel, count, span: provenance.map(|p| p.span), kind: None });
 }

@@ -1,13 +1,14 @@
 //! A picture in tiles: which pixel is traced when and by which thread, and nothing about how. The film's bits depend on
 //! neither, because a pixel is made by one thread from random numbers of its own.
 
-use super::Tracer;
 use super::camera::View;
 use super::features::Features;
 use super::film::{Film, Report};
 use super::pixel::Pixel;
 use super::settings::{Crop, ResolvedSettings};
+use super::{Tracer, block};
 use crate::world::World;
+use crate::world::packet::RAYS;
 use rayon::prelude::*;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
@@ -63,6 +64,9 @@ pub struct Picture<'a> {
 /// Width and height of a tile: some thousand rays, so that two threads share a small picture evenly and a large one is not
 /// counted tile by tile.
 pub const TILE: u32 = 32;
+
+/// Width and height of a block of pixels, whose camera rays are cast together.
+const BLOCK: u32 = RAYS.isqrt() as u32;
 
 /// Renders the settings' crop. Once `cancel` is true, no further sample is begun, and the film comes back as far as it
 /// is, with [`Film::finished`] telling which pixels count.
@@ -153,7 +157,7 @@ impl Tile {
     /// Takes the samples up to number `to` of each pixel that has not enough; false where that was cancelled.
     pub fn advance(&mut self, picture: Picture<'_>, to: u32, cancel: &AtomicBool) -> bool {
         let Tile { pixels, report, .. } = self;
-        pixels.iter_mut().all(|pixel| pixel.advance(picture, to, report, cancel))
+        pixels.chunks_mut(RAYS).all(|block| block::advance(block, picture, to, report, cancel))
     }
 
     /// True where every pixel has enough.
@@ -164,16 +168,18 @@ impl Tile {
     /// What there is of the picture; pixels with fewer than `to` samples are not finished, unless they have enough.
     pub fn film(&self, settings: &ResolvedSettings, to: u32) -> Film {
         let mut film = blank(self.crop, settings, self.report.clone());
-        for (i, pixel) in self.pixels.iter().enumerate() {
-            show(&mut film, i, pixel, to);
-        }
+        self.pixels.iter().for_each(|pixel| show(&mut film, pixel, to));
         film
     }
 }
 
-/// The pixels of a crop in reading order, by column and row.
+/// The pixels of a crop, by column and row: square block by block, each in reading order.
 fn places(crop: Crop) -> impl Iterator<Item = [u32; 2]> {
-    (0..crop.height).flat_map(move |y| (0..crop.width).map(move |x| [crop.x + x, crop.y + y]))
+    let block = |part: &Crop| {
+        let Crop { x, y, width, height } = *part;
+        (y..y + height).flat_map(move |y| (x..x + width).map(move |x| [x, y]))
+    };
+    tiles_of(crop, BLOCK).into_iter().flat_map(move |part| block(&part))
 }
 
 /// A crop's film without a pixel.
@@ -187,10 +193,12 @@ fn blank(crop: Crop, settings: &ResolvedSettings, report: Report) -> Film {
 
 /// Puts what a pixel has come to into its place, if that is `to` samples or enough.
 #[inline]
-fn show(film: &mut Film, place: usize, pixel: &Pixel, to: u32) {
-    if pixel.taken < to && !pixel.enough {
+fn show(film: &mut Film, pixel: &Pixel, to: u32) {
+    if pixel.is_open(to) {
         return;
     }
+    let ([x, y], crop) = (pixel.place(), film.crop);
+    let place = (y - crop.y) as usize * crop.width as usize + (x - crop.x) as usize;
     film.pixels[place] = pixel.radiance(&mut film.report);
     film.finished[place] = true;
     film.report.taken.add(pixel.taken, pixel.enough);
@@ -200,18 +208,22 @@ fn show(film: &mut Film, place: usize, pixel: &Pixel, to: u32) {
     }
 }
 
-/// Pixel by pixel: none is kept, as all samples are taken at once. Whoever wants to know which are finished asks the film.
+/// Block by block: none is kept, as all samples are taken at once. Whoever wants to know which are finished asks the film.
 fn render_tile(picture: Picture<'_>, crop: Crop, cancel: &AtomicBool) -> Film {
     let (settings, to) = (picture.settings, picture.settings.samples);
     let mut film = blank(crop, settings, Report::default());
-    for (i, place) in places(crop).enumerate() {
-        let mut pixel = Pixel::new(place, settings);
-        if !pixel.advance(picture, to, &mut film.report, cancel) {
-            break;
+    let mut places = places(crop);
+    let mut pixels = Vec::with_capacity(RAYS);
+    loop {
+        pixels.clear();
+        pixels.extend(places.by_ref().take(RAYS).map(|place| Pixel::new(place, settings)));
+        let goes_on =
+            !pixels.is_empty() && block::advance(&mut pixels, picture, to, &mut film.report, cancel);
+        pixels.iter().for_each(|pixel| show(&mut film, pixel, to));
+        if !goes_on {
+            return film;
         }
-        show(&mut film, i, &pixel, to);
     }
-    film
 }
 
 /// Copies a part into a film.

@@ -21,7 +21,7 @@ use crate::scene::{Layers, Material, Rgb};
 use crate::world::bsdf::{Bsdf, Scattered, Slot};
 use crate::world::light::Lights;
 use crate::world::texture::Sampled;
-use crate::world::{Hit, Ray, RayKind, World};
+use crate::world::{Found, Hit, Ray, RayKind, World};
 use std::cell::Cell;
 
 /// The tracers `whitted` and `raycast`.
@@ -109,13 +109,14 @@ impl Tasks {
 const LEAST_WEIGHT: f64 = 1.0 / (1u64 << 30) as f64;
 
 impl Tracer for Whitted {
-    fn radiance(&self, world: &World, ray: Ray, sampler: &mut Sampler) -> Rgb {
+    fn radiance(&self, world: &World, ray: &Ray, found: &Found, sampler: &mut Sampler) -> Rgb {
         sampler.rays.camera += 1;
         let mut tasks = Tasks::default();
-        let mut task = Task { ray, weight: Rgb::ONE, segment: 1, inside: Inside::NOTHING };
+        let mut task = Task { ray: *ray, weight: Rgb::ONE, segment: 1, inside: Inside::NOTHING };
         let mut sum = Rgb::ZERO;
+        let mut sent = self.come_to(world, world.hit(ray, found).as_ref(), &task, &mut tasks, sampler);
         loop {
-            match self.follow(world, &task, &mut tasks, sampler) {
+            match sent {
                 Ok(radiance) => sum += radiance,
                 Err(fault) => {
                     sampler.undefined = Some(fault);
@@ -126,6 +127,8 @@ impl Tracer for Whitted {
                 Some(next) => task = next,
                 None => break,
             }
+            // A hit and what it is made of are looked at where they stand: a copy of so much just written waits for the writes.
+            sent = self.come_to(world, world.closest(&task.ray).as_ref(), &task, &mut tasks, sampler);
         }
         tasks.keep();
         sum
@@ -134,10 +137,15 @@ impl Tracer for Whitted {
 
 impl Whitted {
     /// What the end of one ray adds to the sample; the rays that go on from there are added to the tasks.
-    fn follow(&self, world: &World, task: &Task, tasks: &mut Tasks, sampler: &mut Sampler) -> Sampled<Rgb> {
-        // Both are looked at where they stand: a copy of so much just written waits for the writes.
-        let met = world.closest(&task.ray);
-        let Some(hit) = &met else {
+    fn come_to(
+        &self,
+        world: &World,
+        met: Option<&Hit<'_>>,
+        task: &Task,
+        tasks: &mut Tasks,
+        sampler: &mut Sampler,
+    ) -> Sampled<Rgb> {
+        let Some(hit) = met else {
             return Ok(task.weight * task.inside.kept(f64::INFINITY) * self.beyond(&task.ray));
         };
         sampler.first.meet(&task.ray, hit);

@@ -189,7 +189,7 @@ fn where_an_error_decides_records_are_made_for_it_and_not_for_the_most_samples()
     let [decided, said] = [(Some(0.1), 4096), (None, 25)].map(|(error, samples)| {
         let tracer = tracer_from(&ResolvedSettings { error, ..records([12, 12], samples) }, &room, eye, X);
         let ray = Ray { origin: eye, direction: X, t_max: f64::INFINITY, kind: RayKind::Camera };
-        tracer.radiance(&room, ray, &mut Sampler::new(1, 2, 3, 4))
+        tracer.radiance(&room, &ray, &room.find(&ray), &mut Sampler::new(1, 2, 3, 4))
     });
     assert_eq!(decided, said);
 }

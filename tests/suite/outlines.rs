@@ -10,7 +10,7 @@ use ogee::render::sampler::Sampler;
 use ogee::render::settings::{Crop, ResolvedSettings};
 use ogee::render::tiles::Picture;
 use ogee::scene::*;
-use ogee::world::{Ray, World};
+use ogee::world::{Found, Ray, World};
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
@@ -51,8 +51,8 @@ fn lamp(material: &Arc<Material>) -> World {
 struct Plain(Box<dyn Tracer>);
 
 impl Tracer for Plain {
-    fn radiance(&self, world: &World, ray: Ray, sampler: &mut Sampler) -> Rgb {
-        self.0.radiance(world, ray, sampler)
+    fn radiance(&self, world: &World, ray: &Ray, found: &Found, sampler: &mut Sampler) -> Rgb {
+        self.0.radiance(world, ray, found, sampler)
     }
 }
 

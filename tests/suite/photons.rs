@@ -34,7 +34,9 @@ fn by(settings: impl Fn(u64) -> ResolvedSettings, world: &World, eye: DVec3, tar
             let direction = (*target - eye).normalize();
             let ray = Ray { origin: eye, direction, t_max: f64::INFINITY, kind: RayKind::Camera };
             for sample in 0..rays {
-                sum += tracer.radiance(world, ray, &mut Sampler::new(seed, i as u32, 0, sample)).x;
+                sum += tracer
+                    .radiance(world, &ray, &world.find(&ray), &mut Sampler::new(seed, i as u32, 0, sample))
+                    .x;
             }
         }
     }
@@ -158,7 +160,7 @@ fn photons_leave_the_same_picture_on_any_number_of_threads() {
             let direction = (DVec3::new(f64::from(i) / 64.0 - 0.5, 0.0, 0.1) - 0.9 * Y - 2.5 * X).normalize();
             let ray =
                 Ray { origin: 2.5 * X + 0.9 * Y, direction, t_max: f64::INFINITY, kind: RayKind::Camera };
-            tracer.radiance(&world, ray, &mut Sampler::new(1, i, 0, 0))
+            tracer.radiance(&world, &ray, &world.find(&ray), &mut Sampler::new(1, i, 0, 0))
         };
         (0..64).map(see).collect::<Vec<Rgb>>()
     };

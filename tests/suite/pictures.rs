@@ -14,7 +14,7 @@ use ogee::render::sampler::Sampler;
 use ogee::render::settings::{Crop, ResolvedSettings};
 use ogee::render::tiles::{Picture, Progress, render, render_in_tiles};
 use ogee::scene::*;
-use ogee::world::{Ray, World};
+use ogee::world::{Found, Ray, World};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
@@ -335,8 +335,8 @@ fn a_crop_is_the_same_part_of_the_whole() {
 struct Normals;
 
 impl Tracer for Normals {
-    fn radiance(&self, world: &World, ray: Ray, _: &mut Sampler) -> Rgb {
-        world.closest(&ray).map_or(Rgb::ZERO, |hit| (hit.normal + 1.0) / 2.0)
+    fn radiance(&self, world: &World, ray: &Ray, found: &Found, _: &mut Sampler) -> Rgb {
+        world.hit(ray, found).map_or(Rgb::ZERO, |hit| (hit.normal + 1.0) / 2.0)
     }
 }
 
@@ -385,7 +385,7 @@ fn a_plane_mirror_shows_the_scene_mirrored() {
 struct Broken;
 
 impl Tracer for Broken {
-    fn radiance(&self, _: &World, ray: Ray, _: &mut Sampler) -> Rgb {
+    fn radiance(&self, _: &World, ray: &Ray, _: &Found, _: &mut Sampler) -> Rgb {
         if (ray.direction.x / ray.direction.z).abs() < 0.05 { Rgb::splat(f64::NAN) } else { Rgb::ONE }
     }
 }

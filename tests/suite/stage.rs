@@ -238,7 +238,7 @@ pub fn seen_by(settings: &ResolvedSettings, world: &World, origin: DVec3, toward
     let mut last = Sampler::new(0, 0, 0, 0);
     for sample in 0..settings.samples {
         last = Sampler::new(settings.seed, 0, 0, sample);
-        sum += tracer.radiance(world, ray, &mut last);
+        sum += tracer.radiance(world, &ray, &world.find(&ray), &mut last);
     }
     (sum / f64::from(settings.samples), last)
 }
