@@ -7,7 +7,7 @@ use super::features::FeatureSum;
 use super::film::{Fault, Film, PixelSum, Report, dimmed, reading_order};
 use super::filter;
 use super::outline::{self, Emission};
-use super::sampler::Sampler;
+use super::sampler::{RayCounts, Sampler};
 use super::settings::ResolvedSettings;
 use super::tiles::Picture;
 use crate::scene::Rgb;
@@ -38,6 +38,7 @@ pub struct Pixel {
 
 impl Pixel {
     /// The pixel in a column and row of the whole picture, without a sample.
+    #[inline]
     pub fn new(place: [u32; 2], settings: &ResolvedSettings) -> Pixel {
         let features = (!settings.kept().is_empty()).then(Box::default);
         let blocks = settings.error.map(|_| Box::default());
@@ -62,23 +63,21 @@ impl Pixel {
         self.enough = blocks.error(settings.exposure).is_some_and(|error| error <= target);
     }
 
-    /// The numbers of the next sample.
-    pub fn sampler(&mut self, picture: Picture<'_>, report: &mut Report) -> Sampler {
-        let ([x, y], settings) = (self.place, picture.settings);
-        let rays = || outline::rays(picture, self.place, &mut report.rays);
-        let mut sampler =
-            Sampler::new(settings.seed, x, y, self.taken).of_kind(settings.sampler, settings.samples);
-        sampler.emission_rays = *self.emission_rays.get_or_insert_with(rays);
-        sampler.asking(settings.kept().look())
+    /// Finds how many rays of each sample are to find what is seen to emit, once; those that ask are counted.
+    #[inline]
+    pub fn ask_for_outlines(&mut self, picture: Picture<'_>, counts: &mut RayCounts) {
+        let place = self.place;
+        self.emission_rays.get_or_insert_with(|| outline::rays(picture, place, counts));
     }
 
     /// The ray of the next sample, by its first numbers; none where the projection shows nothing.
+    #[inline]
     pub fn ray(&self, picture: Picture<'_>, sampler: &mut Sampler) -> Option<Ray> {
         camera_ray(picture, self.place, sampler)
     }
 
-    /// Takes the next sample, by its ray and what that meets if it has one, and by the rest of its numbers, and turns them to the one after it. Finds whether the
-    /// error is small enough then.
+    /// Takes the next sample, by its ray and what that meets if it has one, and by the rest of its numbers. Finds whether the error is small enough then.
+    #[inline]
     pub fn take(
         &mut self,
         picture: Picture<'_>,
@@ -86,6 +85,8 @@ impl Pixel {
         sampler: &mut Sampler,
         report: &mut Report,
     ) {
+        sampler.forget();
+        sampler.emission_rays = self.emission_rays.unwrap_or(0);
         let (emission, found) = traced(picture, self.place, sight, sampler);
         let radiance = match picture.settings.clamp {
             Some(most) => {
@@ -107,7 +108,6 @@ impl Pixel {
             self.undefined = self.undefined.or(sampler.undefined);
         }
         report.rays += sampler.rays;
-        sampler.restart();
         self.taken += 1;
         self.weigh(radiance, picture.settings);
     }
@@ -122,6 +122,7 @@ impl Pixel {
 }
 
 /// What rays for outlines find of a sample, and what its own ray does if there is one.
+#[inline]
 fn traced(
     picture: Picture<'_>,
     place: [u32; 2],

@@ -18,12 +18,7 @@ use glam::DVec2;
 #[derive(Clone, Debug)]
 pub struct Sampler {
     seed: u64,
-    /// Row and column.
-    place: u64,
-    /// Both mixed, once a number is asked for: many a sample needs none.
-    pixel: Option<u64>,
-    sample: u32,
-    dimension: u32,
+    turn: Turn,
     kind: SamplerKind,
     /// Samples of the pixel, which a grid must know.
     samples: u32,
@@ -37,6 +32,31 @@ pub struct Sampler {
     pub suspect: Suspect,
     /// How many other rays find the radiance that the camera sees a surface emit; none where its own ray does.
     pub emission_rays: u32,
+}
+
+/// Whose numbers come next: a sample of a pixel, and how many of its dimensions were taken.
+#[derive(Clone, Copy, Debug)]
+pub struct Turn {
+    /// Row and column.
+    place: u64,
+    /// Both mixed with the seed, once a number is asked for: many a sample needs none.
+    pixel: Option<u64>,
+    sample: u32,
+    dimension: u32,
+}
+
+impl Turn {
+    /// A sample of the pixel in a column and row of the whole picture, from its first number on.
+    #[inline]
+    pub fn new([x, y]: [u32; 2], sample: u32) -> Turn {
+        Turn { place: u64::from(y) << 32 | u64::from(x), pixel: None, sample, dimension: 0 }
+    }
+
+    /// The next sample of the pixel.
+    #[inline]
+    pub fn next(self) -> Turn {
+        Turn { sample: self.sample + 1, dimension: 0, ..self }
+    }
 }
 
 /// How many rays were cast, by what for.
@@ -91,10 +111,7 @@ impl Sampler {
     pub fn new(seed: u64, x: u32, y: u32, sample: u32) -> Sampler {
         Sampler {
             seed,
-            place: u64::from(y) << 32 | u64::from(x),
-            pixel: None,
-            sample,
-            dimension: 0,
+            turn: Turn::new([x, y], sample),
             kind: SamplerKind::Sobol,
             samples: 1,
             rays: RayCounts::default(),
@@ -107,7 +124,8 @@ impl Sampler {
 
     /// The same sample from its first number on, of which it is asked whose fault it is.
     pub fn accusing(&self, emission_rays: u32) -> Sampler {
-        Sampler { dimension: 0, first: First::Unasked, suspect: Suspect::Sought, emission_rays, ..*self }
+        let turn = Turn { dimension: 0, ..self.turn };
+        Sampler { turn, first: First::Unasked, suspect: Suspect::Sought, emission_rays, ..*self }
     }
 
     /// The same sample by numbers of another kind, of so many of its pixel.
@@ -124,11 +142,21 @@ impl Sampler {
         self
     }
 
-    /// The next sample of the pixel, with nothing noted. In place: most of it stays, and it is not small.
+    /// Whose numbers come next.
     #[inline]
-    pub fn restart(&mut self) {
-        self.sample += 1;
-        self.dimension = 0;
+    pub fn turn(&self) -> Turn {
+        self.turn
+    }
+
+    /// Gives the numbers of another turn from now on, with the same seed.
+    #[inline]
+    pub fn turn_to(&mut self, turn: Turn) {
+        self.turn = turn;
+    }
+
+    /// Forgets what was noted of a sample.
+    #[inline]
+    pub fn forget(&mut self) {
         self.rays = RayCounts::default();
         self.undefined = None;
         if let First::Seen(_) = self.first {
@@ -149,11 +177,11 @@ impl Sampler {
     /// The next dimensions as a set of points that are stratified together. Taken once, before a loop over its points.
     #[inline]
     pub fn next_set(&mut self) -> PointSet {
-        let (seed, place) = (self.seed, self.place);
-        let pixel = *self.pixel.get_or_insert_with(|| mix(mix(seed ^ GOLDEN).wrapping_add(mix(place))));
-        let key = mix(pixel.wrapping_add(u64::from(self.dimension).wrapping_mul(GOLDEN)));
-        self.dimension += 1;
-        let Sampler { sample, kind, samples, .. } = *self;
+        let Sampler { seed, kind, samples, ref mut turn, .. } = *self;
+        let Turn { place, sample, .. } = *turn;
+        let pixel = *turn.pixel.get_or_insert_with(|| mix(mix(seed ^ GOLDEN).wrapping_add(mix(place))));
+        let key = mix(pixel.wrapping_add(u64::from(turn.dimension).wrapping_mul(GOLDEN)));
+        turn.dimension += 1;
         PointSet { order: key as u32, scramble: mix(key ^ GOLDEN), sample, kind, samples }
     }
 
@@ -163,7 +191,7 @@ impl Sampler {
         if needed {
             return Some(self.next_set());
         }
-        self.dimension += 1;
+        self.turn.dimension += 1;
         None
     }
 }
