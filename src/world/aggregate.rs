@@ -1,6 +1,8 @@
 //! What a world stores: shapes and placements in groups, each with a tree; meshes with theirs; and how a placement of a
 //! placement is counted.
 
+use super::RayKind;
+use super::query::is_hidden;
 use super::shape::mesh::MeshShape;
 use super::shape::{Csg, EVERYTHING, Shape, image_of};
 use super::tree::Tree;
@@ -174,6 +176,12 @@ impl Group {
     /// The number in the scene's order of the item at a position.
     pub fn number_of(&self, position: u32) -> u32 {
         self.tree.order()[position as usize]
+    }
+
+    /// Whether rays of a kind pass through the item at a position.
+    #[inline(always)]
+    pub fn hides(&self, position: usize, kind: RayKind) -> bool {
+        !self.hide.is_empty() && is_hidden(self.hide[self.number_of(position as u32) as usize], kind)
     }
 
     /// The solid put together that an item is, by its number in the scene's order, if it is one.

@@ -137,9 +137,7 @@ impl<'w> Query<'w> {
 
     #[inline(never)]
     fn visit_item(&mut self, group: &Group, position: usize, local: &Local<'_>) {
-        if !group.hide.is_empty()
-            && is_hidden(group.hide[group.number_of(position as u32) as usize], self.kind)
-        {
+        if group.hides(position, self.kind) {
             return;
         }
         match &group.items[position] {

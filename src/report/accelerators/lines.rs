@@ -4,16 +4,37 @@ use super::subject::{Line, Subject};
 use crate::geometry::mesh::Mesh;
 use crate::math::Aabb;
 use crate::math::random::Random;
+use crate::world::packet::RAYS;
 use glam::DVec3;
 
 /// A set of rays with its name, and whether any meeting will do.
 pub struct Set {
-    /// "camera", "shadow" or "diffuse".
+    /// "camera", "together", "shadow" or "diffuse".
     pub name: &'static str,
     /// True of shadow rays.
     pub any: bool,
+    /// True of rays that are asked as many at once as a packet has.
+    pub together: bool,
     /// The rays.
     pub lines: Vec<Line>,
+}
+
+impl Set {
+    /// Rays that are asked one by one what they meet first.
+    pub fn new(name: &'static str, lines: Vec<Line>) -> Set {
+        Set { name, any: false, together: false, lines }
+    }
+
+    /// How many of the rays meet something.
+    pub fn met(&self, subject: &Subject<'_>) -> usize {
+        if !self.together {
+            return self.lines.iter().filter(|line| subject.meet(line, self.any).is_some()).count();
+        }
+        let mut met = 0;
+        let each = self.lines.chunks(RAYS);
+        each.for_each(|some| subject.meet_each(some, |_, found| met += usize::from(found.is_some())));
+        met
+    }
 }
 
 /// What keeps a ray that starts on a surface from it, as a share of the mesh's size.
@@ -54,10 +75,22 @@ pub fn sets(mesh: &Mesh, seen_by: &Subject<'_>, side: usize) -> Vec<Set> {
         diffuse.push(Line { origin, direction: vector(&mut random), t_max: f64::INFINITY });
     }
     vec![
-        Set { name: "camera", any: false, lines: camera },
-        Set { name: "shadow", any: true, lines: shadow },
-        Set { name: "diffuse", any: false, lines: diffuse },
+        Set::new("camera", camera),
+        Set { any: true, ..Set::new("shadow", shadow) },
+        Set::new("diffuse", diffuse),
     ]
+}
+
+/// The rays of a square picture, square after square of pixels, each row by row, to be asked together. The side is a multiple of a square's.
+pub fn in_squares(camera: &[Line], side: usize) -> Set {
+    let square = RAYS.isqrt();
+    let line = |i: usize| {
+        let (place, within) = (i / RAYS, i % RAYS);
+        let column = place % (side / square) * square + within % square;
+        let row = place / (side / square) * square + within / square;
+        camera[row * side + column]
+    };
+    Set { together: true, ..Set::new("together", (0..camera.len()).map(line).collect()) }
 }
 
 /// Rays anywhere through the mesh's surroundings; every eighth along an axis, every fourth from a corner of the mesh.

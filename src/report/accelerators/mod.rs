@@ -10,7 +10,7 @@ pub mod rays;
 pub mod subject;
 
 use crate::geometry::mesh::Mesh;
-use lines::{Set, anywhere, at_edges, camera, sets};
+use lines::{Set, anywhere, at_edges, camera, in_squares, sets};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::time::Instant;
@@ -60,7 +60,7 @@ impl Plan {
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct RayRow {
-    /// "camera", "shadow" or "diffuse".
+    /// "camera", "together", "shadow" or "diffuse".
     pub name: String,
     /// How many.
     pub n: usize,
@@ -105,7 +105,8 @@ pub struct AcceleratorRow {
 /// All trees over a mesh.
 pub fn measure(name: &str, mesh: &Mesh, plan: &Plan) -> Vec<AcceleratorRow> {
     let made: Vec<(Subject<'_>, f64)> = Builder::TREES.iter().map(|builder| built(mesh, *builder)).collect();
-    let sets = sets(mesh, &made[0].0, plan.side);
+    let mut sets = sets(mesh, &made[0].0, plan.side);
+    sets.push(in_squares(&sets[0].lines, plan.side));
     let subjects: Vec<&Subject<'_>> = made.iter().map(|(subject, _)| subject).collect();
     let rays: Vec<Vec<RayRow>> = sets.iter().map(|set| of_set(set, &subjects, plan.rounds)).collect();
     let n = (plan.most_tests() / mesh.triangles.len().max(1)).clamp(20, plan.checked);
@@ -129,7 +130,7 @@ pub fn over_pixels(name: &str, mesh: &Mesh, plan: &Plan, mut hear: impl FnMut(us
     let mut rows = Vec::new();
     for side in plan.sides {
         hear(*side);
-        let set = Set { name: "camera", any: false, lines: camera(mesh, *side) };
+        let set = Set::new("camera", camera(mesh, *side));
         let rays = of_set(&set, &subjects, plan.rounds);
         rows.extend(made.iter().zip(rays).zip(Builder::TREES).map(|(((subject, build), rays), builder)| {
             AcceleratorRow {
@@ -180,8 +181,7 @@ fn of_set(set: &Set, subjects: &[&Subject<'_>], rounds: usize) -> Vec<RayRow> {
         }
         for (subject, best) in subjects.iter().zip(&mut seconds) {
             let started = Instant::now();
-            let met = set.lines.iter().filter(|line| subject.meet(line, set.any).is_some()).count();
-            std::hint::black_box(met);
+            std::hint::black_box(set.met(subject));
             *best = best.min(started.elapsed().as_secs_f64());
         }
     }

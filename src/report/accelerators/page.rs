@@ -29,9 +29,9 @@ fn head(machine: &Machine) -> String {
          `ogee bench accelerators` measured it, `ogee bench report` wrote this page from [results](results) alone. {told}.\n\n\
          All trees stand over the same triangles with the same test of each, as scenes do. Bytes are for \
          each triangle: the tree's nodes, and what is in its leaves; those of the mesh itself come on top and are the same for all. Rays are on one \
-         thread, in turn, the fastest of several rounds; building takes all threads. Nodes and tests are counted (of very many rays on some, evenly \
-         chosen), and the same on every machine; the \
-         nodes of `bvh` have eight children, those of `kdtree` two, and its leaves count as nodes. Wrong are rays that meet \
+         thread, in turn, the fastest of several rounds; building takes all threads. Rays together are those of the camera, sixteen at once, in \
+         squares of four by four pixels; a kd-tree is asked one by one. Nodes and tests are counted (of very many rays on some, evenly chosen), and \
+         the same on every machine; the nodes of `bvh` have eight children, those of `kdtree` two, and its leaves count as nodes. Wrong are rays that meet \
          another triangle, at another distance, or are blocked otherwise, than by a test of every triangle: half of them go through edges and corners. \
          `bvh` and `kdtree` are what scenes use; the others are what they are measured against.\n",
         told = machine.told(),
@@ -90,8 +90,8 @@ fn plots(index: &mut String, pages: &mut Vec<Page>, mesh: &str, rows: &[&Acceler
 
 fn table(index: &mut String, rows: &[&AcceleratorRow]) {
     index.push_str(
-        "\n| triangles | pixels | tree | build, s | bytes a triangle: tree | leaves | named | camera, Mrays/s | nodes | tests | shadow | nodes | tests \
-         | diffuse | nodes | tests | wrong |\n|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n",
+        "\n| triangles | pixels | tree | build, s | bytes a triangle: tree | leaves | named | camera, Mrays/s | nodes | tests | together | shadow | nodes | tests \
+         | diffuse | nodes | tests | wrong |\n|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n",
     );
     for row in rows {
         let share = |bytes: usize| short(bytes as f64 / row.triangles.max(1) as f64);
@@ -106,12 +106,14 @@ fn table(index: &mut String, rows: &[&AcceleratorRow]) {
             share(row.bytes[1]),
             short(row.references as f64 / row.triangles.max(1) as f64),
         );
-        for name in ["camera", "shadow", "diffuse"] {
-            let figures = match row.rays.iter().find(|ray| ray.name == name) {
-                Some(ray) => [ray.mrays, ray.nodes, ray.tests].map(short),
-                None => std::array::from_fn(|_| "–".into()),
-            };
-            let _ = write!(index, " {} |", figures.join(" | "));
+        for name in ["camera", "together", "shadow", "diffuse"] {
+            let ray = row.rays.iter().find(|ray| ray.name == name);
+            let figure = |of: fn(&RayRow) -> f64| ray.map_or("–".into(), |ray| short(of(ray)));
+            let _ = write!(index, " {} |", figure(|ray| ray.mrays));
+            // Together they are counted as one by one.
+            if name != "together" {
+                let _ = write!(index, " {} | {} |", figure(|ray| ray.nodes), figure(|ray| ray.tests));
+            }
         }
         let wrong = match row.checked {
             0 => "–".into(),

@@ -1,6 +1,6 @@
 //! Rays of a packet through aggregates and their placements: together as long as they go well together, then each as if it were alone.
 
-use super::{Local, Query, is_hidden};
+use super::{Local, Query};
 use crate::world::aggregate::{Aggregate, Group, Instance, Item, MeshAggregate};
 use crate::world::bvh::Stored;
 use crate::world::packet::{Members, Packet, RAYS};
@@ -97,7 +97,7 @@ impl<'w> Queries<'w> {
 
     fn visit_instance(&mut self, group: &'w Group, position: usize, instance: &Instance, place: &Place<'_>) {
         let Query { world, kind, .. } = self.0[place.members.first()];
-        if !group.hide.is_empty() && is_hidden(group.hide[group.number_of(position as u32) as usize], kind) {
+        if group.hides(position, kind) {
             return;
         }
         let aggregate = &world.aggregates[instance.aggregate as usize];

@@ -132,7 +132,7 @@ impl Framed {
         let (mut held, mut spilled) = ([nothing; STACK], Vec::new());
         let mut stack = Stack::new(&mut held, &mut spilled);
         let mut limit = greatest_limit(limits);
-        let mut at = Pending { near: 0.0, child: Child::NONE, members };
+        let mut at = Pending { near: 0.0, child: Child::node(0), members };
         loop {
             if let Some(items) = at.child.items() {
                 leaf(items, at.members, limits);
