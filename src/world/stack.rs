@@ -1,5 +1,10 @@
 //! What a traversal has still to visit: a stack of which the first entries need no allocation and deeper ones spill.
 
+/// Entries that an owner lends. They begin a cache line, and so that they do, all that a walk keeps beside them does or lies within one: else it is
+/// left to who calls whether the numbers of a ray lie across two, which costs a tenth of the time of a walk.
+#[repr(align(64))]
+pub(super) struct Held<T, const N: usize>(pub [T; N]);
+
 /// A stack; `N` entries need no allocation, the rest are in a vector. Its owner lends both: apart from it, so that the length stays in a register.
 pub(super) struct Stack<'s, T, const N: usize> {
     entries: &'s mut [T; N],
@@ -10,7 +15,7 @@ pub(super) struct Stack<'s, T, const N: usize> {
 impl<'s, T: Copy, const N: usize> Stack<'s, T, N> {
     /// Empty, whatever `entries` holds.
     #[inline(always)]
-    pub fn new(entries: &'s mut [T; N], spilled: &'s mut Vec<T>) -> Self {
+    pub fn new(Held(entries): &'s mut Held<T, N>, spilled: &'s mut Vec<T>) -> Self {
         Stack { entries, len: 0, spilled }
     }
 
@@ -81,11 +86,11 @@ fn unspill<T>(spilled: &mut Vec<T>) -> Option<T> {
 
 #[cfg(test)]
 mod tests {
-    use super::Stack;
+    use super::{Held, Stack};
 
     #[test]
     fn entries_come_back_last_first_and_then_those_that_spilled() {
-        let (mut held, mut spilled) = ([0; 3], Vec::new());
+        let (mut held, mut spilled) = (Held([0; 3]), Vec::new());
         let mut stack = Stack::<u32, 3>::new(&mut held, &mut spilled);
         for round in 1..8 {
             (0..round).for_each(|i| stack.push(i));

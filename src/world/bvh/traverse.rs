@@ -13,7 +13,7 @@ pub(in crate::world) use packet::Limits;
 use super::{Child, Node, Tree, WIDTH};
 use crate::math::Aabb;
 use crate::math::error::gamma;
-use crate::world::stack::Stack;
+use crate::world::stack::{Held, Stack};
 use entry::Entry;
 use glam::DVec3;
 use std::ops::Range;
@@ -190,7 +190,7 @@ fn walk(
     let fetch = |child: Child| stored.fetch(nodes, child);
     let mut limit = entry.limit(t_max);
     let mut last = last_within(limit);
-    let (mut held, mut spilled) = ([0; STACK], Vec::new());
+    let (mut held, mut spilled) = (Held([0; STACK]), Vec::new());
     let mut stack = Waiting::new(&mut held, &mut spilled);
     let mut node = &nodes[0];
     loop {
@@ -231,7 +231,7 @@ fn walk_any(
 ) {
     let nodes = &tree.nodes[..];
     let limit = entry.limit(t_max);
-    let (mut held, mut spilled) = ([Child::NONE; STACK], Vec::new());
+    let (mut held, mut spilled) = (Held([Child::NONE; STACK]), Vec::new());
     let mut stack = Stack::new(&mut held, &mut spilled);
     let mut node = &nodes[0];
     loop {

@@ -11,7 +11,7 @@
 use super::Tree;
 use crate::math::error::gamma;
 use crate::math::exact::{exponent, power_of_two};
-use crate::world::stack::Stack;
+use crate::world::stack::{Held, Stack};
 use glam::DVec3;
 use std::ops::Range;
 
@@ -182,7 +182,7 @@ impl Tree {
         if near > far {
             return;
         }
-        let (mut held, mut spilled) = ([Entry::default(); STACK], Vec::new());
+        let (mut held, mut spilled) = (Held([Entry::default(); STACK]), Vec::new());
         let mut stack = Stack::new(&mut held, &mut spilled);
         let mut offered = [u32::MAX; MAILBOXES];
         let mut at = 0;

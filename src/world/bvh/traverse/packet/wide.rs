@@ -7,7 +7,7 @@ use super::super::{Child, Node, Stored, Tree, WIDTH, take};
 use super::{BLOCKS, LANES, Limits};
 use crate::math::vectors::lanes::{load_8, narrow_8, store_8};
 use crate::world::packet::{Members, Packet, RAYS};
-use crate::world::stack::Stack;
+use crate::world::stack::{Held, Stack};
 use std::arch::x86_64::*;
 use std::ops::Range;
 
@@ -129,7 +129,7 @@ impl Framed {
         leaf: &mut impl FnMut(Range<usize>, Members, &mut Limits),
     ) {
         let nothing = Pending { near: 0.0, child: Child::NONE, members: Members(0) };
-        let (mut held, mut spilled) = ([nothing; STACK], Vec::new());
+        let (mut held, mut spilled) = (Held([nothing; STACK]), Vec::new());
         let mut stack = Stack::new(&mut held, &mut spilled);
         let mut limit = greatest_limit(limits);
         let mut at = Pending { near: 0.0, child: Child::node(0), members };

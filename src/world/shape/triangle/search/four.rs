@@ -24,15 +24,17 @@ pub struct Start {
 }
 
 impl Start {
-    /// Of rays from one point that have their largest axis in common.
+    /// Of rays from one point that have their largest axis in common, among corners that are `EXACT` or not.
     #[target_feature(enable = "avx2,bmi1,bmi2,fma")]
     #[inline]
-    pub fn new(corners: &Corners, origin: DVec3, axes: [usize; 3]) -> Start {
-        let from = origin - corners.origin;
-        let margin = if corners.are_exact() { 0.0 } else { margin(corners, from) };
+    pub fn new<const EXACT: bool>(corners: &Corners, origin: DVec3, axes: [usize; 3]) -> Start {
+        let from = if EXACT { origin } else { origin - corners.origin };
+        let margin = if EXACT { 0.0 } else { margin(corners, from) };
+        // Axes of a vector are told apart by branches.
+        let each: &[f64; 3] = from.as_ref();
         Start {
             axes: Axis::ending_with(axes[2]),
-            at: axes.map(|axis| _mm256_set1_pd(from[axis])),
+            at: axes.map(|axis| _mm256_set1_pd(each[axis])),
             margin: _mm256_set1_pd(margin),
         }
     }

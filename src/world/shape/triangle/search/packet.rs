@@ -24,7 +24,7 @@ pub(super) fn nearest<const EXACT: bool>(
     limits: &[f64; RAYS],
     found: &mut [Found; RAYS],
 ) -> Option<()> {
-    let (groups, fours) = (Group::all(among, packet, members), &among.corners.fours[..]);
+    let (groups, fours) = (Group::all::<EXACT>(among, packet, members), &among.corners.fours[..]);
     let look = |range: Range<usize>, members: Members, limits: &mut Limits| {
         for at in range.start / AT_ONCE..range.end.div_ceil(AT_ONCE) {
             let real = (1 << (range.end - AT_ONCE * at).min(AT_ONCE)) - 1;
@@ -62,7 +62,7 @@ impl Group {
     /// The rays of a packet by their largest axis, with the roundings of a [`Sheared`](super::Sheared).
     #[target_feature(enable = "avx2,bmi1,bmi2,fma")]
     #[inline]
-    fn all(among: &Ordered, packet: &Packet, members: Members) -> [Group; 3] {
+    fn all<const EXACT: bool>(among: &Ordered, packet: &Packet, members: Members) -> [Group; 3] {
         let sign = _mm256_set1_pd(-0.0);
         let larger = |a, b| _mm256_cmp_pd::<_CMP_GT_OQ>(a, b);
         let (mut along_x, mut along_y) = (0, 0);
@@ -75,15 +75,16 @@ impl Group {
             along_y |= (_mm256_movemask_pd(is_y) as u32) << (LANES * four);
         }
         let all = [along_x, along_y, !(along_x | along_y)];
-        let group = |axis: usize| Group::along(axis, members.among(Members(all[axis])), among, packet);
+        let group =
+            |axis: usize| Group::along::<EXACT>(axis, members.among(Members(all[axis])), among, packet);
         [group(0), group(1), group(2)]
     }
 
     #[target_feature(enable = "avx2,bmi1,bmi2,fma")]
     #[inline]
-    fn along(axis: usize, members: Members, among: &Ordered, packet: &Packet) -> Group {
+    fn along<const EXACT: bool>(axis: usize, members: Members, among: &Ordered, packet: &Packet) -> Group {
         let axes = AXES[axis];
-        let start = Start::new(among.corners, packet.origin, axes);
+        let start = Start::new::<EXACT>(among.corners, packet.origin, axes);
         let mut shear = [[0.0; RAYS]; 3];
         if !members.is_empty() {
             let along = axes.map(|axis| &packet.directions[axis]);

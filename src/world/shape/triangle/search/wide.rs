@@ -141,7 +141,7 @@ mod x86 {
         limit: f64,
     ) -> Option<(usize, Meet)> {
         let Sheared { axes, shear: [x, y, per_depth], .. } = Sheared::new(ray);
-        let start = Start::new(among.corners, ray.origin, axes);
+        let start = Start::new::<EXACT>(among.corners, ray.origin, axes);
         let shear = [x, y].map(|x| _mm256_set1_pd(x));
         let fours = &among.corners.fours[..];
         // Each four that a range touches. What else is in it are triangles too.
