@@ -10,6 +10,7 @@ use super::outline::{self, Emission};
 use super::sampler::{RayCounts, Sampler};
 use super::settings::ResolvedSettings;
 use super::tiles::Picture;
+use crate::diag::Span;
 use crate::scene::Rgb;
 use crate::world::texture::TextureFault;
 use crate::world::{Found, Ray};
@@ -161,17 +162,17 @@ pub(super) fn ray_through(view: &View, place: DVec2, sampler: &mut Sampler) -> O
     view.ray(place, lens)
 }
 
-/// Counts a sample that was not finite, and finds out whose fault the first was by tracing it again.
+/// Counts a sample that was not finite, and finds out whose fault the first was.
 fn note_non_finite(picture: Picture<'_>, pixel: [u32; 2], sampler: &Sampler, report: &mut Report) {
-    report.non_finite += 1;
-    let before = report.first_non_finite;
-    if let Some(first) = &mut report.first_non_finite {
-        first.count += 1;
-    }
-    let is_first = before.is_none_or(|first| reading_order(pixel) < reading_order(first.pixel));
-    if !is_first {
-        return;
-    }
+    let known = report.first_non_finite;
+    let is_first = known.is_none_or(|first| reading_order(pixel) < reading_order(first.pixel));
+    let span = if is_first { culprit(picture, pixel, sampler) } else { None };
+    let fault = Fault { pixel, count: 1, span, kind: None };
+    report.merge(Report { non_finite: 1, first_non_finite: Some(fault), ..Report::default() });
+}
+
+/// Where in the scene what spoiled a sample was made, by tracing that again.
+fn culprit(picture: Picture<'_>, pixel: [u32; 2], sampler: &Sampler) -> Option<Span> {
     let suspect = |emission_rays| {
         let mut again = sampler.accusing(emission_rays);
         let sight = camera_ray(picture, pixel, &mut again).map(|ray| (ray, picture.world.find(&ray)));
@@ -179,8 +180,6 @@ fn note_non_finite(picture: Picture<'_>, pixel: [u32; 2], sampler: &Sampler, rep
         again.suspect.found()
     };
     // What is seen to emit may have been found by other rays.
-    let found = suspect(sampler.emission_rays).or_else(|| suspect(0));
-    let provenance = found.and_then(|primitive| picture.world.provenance(primitive));
-    let count = 1 + before.map_or(0, |first| first.count);
-    report.first_non_finite = Some(Fault { pixel, count, span: provenance.map(|p| p.span), kind: None });
+    let found = suspect(sampler.emission_rays).or_else(|| suspect(0))?;
+    picture.world.provenance(found).map(|provenance| provenance.span)
 }
