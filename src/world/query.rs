@@ -81,10 +81,16 @@ impl<'w> Query<'w> {
     fn visit_mesh(&mut self, mesh: &MeshAggregate, local: &Local<'_>) {
         let met = mesh.shape.meet_nearest(local.ray, self.limit * local.per_world, self.any);
         if let Some((position, meet)) = met {
-            let part = mesh.shape.triangle_at(position);
-            let id = PrimitiveId { instance: local.instance, shape: 0, part };
-            self.offer(id, 0, meet, local);
+            self.take_triangle(mesh, position, meet, local);
         }
+    }
+
+    /// A meeting with a triangle at a position of its mesh's tree.
+    #[inline(always)]
+    fn take_triangle(&mut self, mesh: &MeshAggregate, position: usize, meet: Meet, local: &Local<'_>) {
+        let part = mesh.shape.triangle_at(position);
+        let id = PrimitiveId { instance: local.instance, shape: 0, part };
+        self.offer(id, 0, meet, local);
     }
 
     /// Groups hold groups, so there is one such function and no copies of it.

@@ -135,25 +135,12 @@ impl Tree {
         t_max: f64,
         leaf: impl FnMut(Range<usize>, f64) -> f64,
     ) {
-        self.traverse_in_place(origin, direction, t_max, || (), leaf);
+        self.traverse_counting(origin, direction, t_max, || (), leaf);
     }
 
-    /// The same, and calls `visit` for each node and each leaf.
-    #[inline]
-    pub fn traverse_counting(
-        &self,
-        origin: DVec3,
-        direction: DVec3,
-        t_max: f64,
-        visit: impl FnMut(),
-        leaf: impl FnMut(Range<usize>, f64) -> f64,
-    ) {
-        self.traverse_in_place(origin, direction, t_max, visit, leaf);
-    }
-
-    /// The same as a part of the caller, by the instructions that it is compiled for.
+    /// The same, and calls `visit` for each node and each leaf; as a part of the caller, by the instructions that it is compiled for.
     #[inline(always)]
-    pub fn traverse_in_place(
+    pub fn traverse_counting(
         &self,
         origin: DVec3,
         direction: DVec3,

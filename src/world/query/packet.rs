@@ -4,7 +4,7 @@ use super::{Local, Query};
 use crate::world::aggregate::{Aggregate, Group, Instance, Item, MeshAggregate};
 use crate::world::bvh::Stored;
 use crate::world::packet::{Members, Packet, RAYS};
-use crate::world::{Found, PrimitiveId, RayKind, World};
+use crate::world::{Found, RayKind, World};
 
 /// What is asked of the rays of a packet, by number.
 pub struct Queries<'w>([Query<'w>; RAYS]);
@@ -62,9 +62,7 @@ impl<'w> Queries<'w> {
     fn visit_mesh(&mut self, mesh: &MeshAggregate, place: &Place<'_>) {
         let rays = (place.packet, place.members);
         mesh.shape.meet_nearest_each(rays, &self.limits(place), |i, position, meet| {
-            let part = mesh.shape.triangle_at(position);
-            let id = PrimitiveId { instance: place.instance, shape: 0, part };
-            place.alone(i, |local| self.0[i].offer(id, 0, meet, local));
+            place.alone(i, |local| self.0[i].take_triangle(mesh, position, meet, local));
         });
     }
 

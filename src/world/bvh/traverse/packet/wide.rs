@@ -106,7 +106,10 @@ impl Framed {
                 return None;
             }
             negative |= u32::from(signs != 0) << a;
-            between[a] = [least_of(bounds[0]), greatest_of(bounds[1])];
+            between[a] = [
+                across(bounds[0], |x, y| _mm256_min_ps(x, y)),
+                across(bounds[1], |x, y| _mm256_max_ps(x, y)),
+            ];
         }
         let from = |toward: f32| {
             let at = |a: usize| {
@@ -152,7 +155,7 @@ impl Framed {
                     }
                 }
             }
-            let limit = first_lane(limit);
+            let limit = _mm256_cvtss_f32(limit);
             let Some(next) = stack.next(|entry| entry.near <= limit) else { return };
             at = next;
         }
@@ -214,29 +217,14 @@ fn greatest_limit(limits: &Limits) -> __m256 {
     for block in 1..BLOCKS {
         most = _mm256_max_ps(load_8(&limits.each[block]), most);
     }
-    greatest_of(most)
+    across(most, |x, y| _mm256_max_ps(x, y))
 }
 
+/// What an operation that may take them in any order makes of all lanes, in every lane.
 #[target_feature(enable = "avx2,bmi1,bmi2,fma")]
 #[inline]
-fn first_lane(x: __m256) -> f32 {
-    _mm256_cvtss_f32(x)
-}
-
-/// The least of the lanes, in every lane.
-#[target_feature(enable = "avx2,bmi1,bmi2,fma")]
-#[inline]
-fn least_of(x: __m256) -> __m256 {
-    let x = _mm256_min_ps(x, _mm256_permute2f128_ps::<1>(x, x));
-    let x = _mm256_min_ps(x, _mm256_permute_ps::<0b01_00_11_10>(x));
-    _mm256_min_ps(x, _mm256_permute_ps::<0b10_11_00_01>(x))
-}
-
-/// The greatest of the lanes, in every lane.
-#[target_feature(enable = "avx2,bmi1,bmi2,fma")]
-#[inline]
-fn greatest_of(x: __m256) -> __m256 {
-    let x = _mm256_max_ps(x, _mm256_permute2f128_ps::<1>(x, x));
-    let x = _mm256_max_ps(x, _mm256_permute_ps::<0b01_00_11_10>(x));
-    _mm256_max_ps(x, _mm256_permute_ps::<0b10_11_00_01>(x))
+fn across(x: __m256, of: impl Fn(__m256, __m256) -> __m256) -> __m256 {
+    let x = of(x, _mm256_permute2f128_ps::<1>(x, x));
+    let x = of(x, _mm256_permute_ps::<0b01_00_11_10>(x));
+    of(x, _mm256_permute_ps::<0b10_11_00_01>(x))
 }

@@ -68,7 +68,7 @@ impl Walked for kdtree::Tree {
         look: impl Fn(&mut Found, Range<usize>) -> bool,
     ) {
         let (LocalRay { origin, direction }, limit) = (*ray, found.limit);
-        self.traverse_in_place(
+        self.traverse_counting(
             origin,
             direction,
             limit,
