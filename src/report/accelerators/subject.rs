@@ -146,8 +146,7 @@ impl<'m> Subject<'m> {
     }
 
     fn ordered(&self) -> Ordered<'_> {
-        let Mesh { triangles, positions, .. } = self.mesh;
-        Ordered { corners: &self.corners, triangles, vertices: positions, order: self.tree.order() }
+        Ordered { corners: &self.corners, mesh: self.mesh, order: self.tree.order() }
     }
 
     /// How far a line goes to one triangle; none where it misses that.

@@ -128,6 +128,28 @@ impl Child {
         (self.0 >> Child::COUNT_BITS) as usize
     }
 
+    /// The node that it is, among those of its tree.
+    #[inline(always)]
+    fn node_of(self, nodes: &[Node]) -> &Node {
+        debug_assert!(
+            self.count() == 0 && self.place() < nodes.len(),
+            "{self:?} is none of {} nodes",
+            nodes.len()
+        );
+        // SAFETY: builders name nodes that there are. What a ray waits for at each node is where the next one stands, and so it is a shift and a sum.
+        #[allow(unsafe_code, reason = "asking whether it is there takes longer than finding it")]
+        unsafe {
+            &*self.start_of(nodes)
+        }
+    }
+
+    /// Where a node stands; of a leaf anywhere.
+    #[inline(always)]
+    fn start_of(self, nodes: &[Node]) -> *const Node {
+        // The count of a node is 0.
+        nodes.as_ptr().wrapping_byte_add(self.0 as usize * (size_of::<Node>() >> Child::COUNT_BITS))
+    }
+
     /// How many items a leaf has; 0 for a node.
     #[inline(always)]
     fn count(self) -> usize {

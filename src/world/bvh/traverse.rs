@@ -176,22 +176,25 @@ impl Tree {
     }
 }
 
-/// The traversal from where the ray enters. `meets` tests a node's children against a limit.
+/// The traversal from where the ray enters. `meets` tests a node's children against a limit, as `limit_of` makes it ready.
 #[inline(always)]
-fn walk(
+fn walk<L: Copy>(
     tree: &Tree,
     entry: Entry,
     mut t_max: f64,
-    meets: impl Fn(&Node, f32) -> Met,
+    (limit_of, meets): (impl Fn(f32) -> L, impl Fn(&Node, L) -> Met),
     stored: Stored,
     leaf: &mut impl FnMut(Range<usize>, f64) -> f64,
 ) {
     let nodes = &tree.nodes[..];
     let fetch = |child: Child| stored.fetch(nodes, child);
-    let mut limit = entry.limit(t_max);
-    let mut last = last_within(limit);
-    let (mut held, mut spilled) = (Held([0; STACK]), Vec::new());
-    let mut stack = Waiting::new(&mut held, &mut spilled);
+    let limits = |t: f64| {
+        let limit = entry.limit(t);
+        (limit_of(limit), last_within(limit))
+    };
+    let (mut limit, mut last) = limits(t_max);
+    let (mut held, mut spilled) = (Held::<_, STACK>::new(), Vec::new());
+    let mut stack = Waiting::on(&mut held, &mut spilled);
     let mut node = &nodes[0];
     loop {
         let met = meets(node, limit);
@@ -209,30 +212,29 @@ fn walk(
                     return;
                 }
                 t_max = found;
-                limit = entry.limit(t_max);
-                last = last_within(limit);
+                (limit, last) = limits(t_max);
             }
             let Some(entry) = stack.next(|entry| *entry <= last) else { return };
             child = child_of(entry);
         }
-        node = &nodes[child.place()];
+        node = child.node_of(nodes);
     }
 }
 
 /// The traversal in no order until `leaf` gives false.
 #[inline(always)]
-fn walk_any(
+fn walk_any<L: Copy>(
     tree: &Tree,
     entry: Entry,
     t_max: f64,
-    meets: impl Fn(&Node, f32) -> Met,
+    (limit_of, meets): (impl Fn(f32) -> L, impl Fn(&Node, L) -> Met),
     stored: Stored,
     leaf: &mut impl FnMut(Range<usize>) -> bool,
 ) {
     let nodes = &tree.nodes[..];
-    let limit = entry.limit(t_max);
-    let (mut held, mut spilled) = (Held([Child::NONE; STACK]), Vec::new());
-    let mut stack = Stack::new(&mut held, &mut spilled);
+    let limit = limit_of(entry.limit(t_max));
+    let (mut held, mut spilled) = (Held::<_, STACK>::new(), Vec::new());
+    let mut stack = Stack::on(&mut held, &mut spilled);
     let mut node = &nodes[0];
     loop {
         let (mut met, _) = meets(node, limit);
@@ -255,6 +257,6 @@ fn walk_any(
             let Some(waiting) = stack.pop() else { return };
             child = waiting;
         }
-        node = &nodes[child.place()];
+        node = child.node_of(nodes);
     }
 }

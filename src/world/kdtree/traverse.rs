@@ -169,8 +169,8 @@ impl Tree {
         if near > far {
             return;
         }
-        let (mut held, mut spilled) = (Held([Entry::default(); STACK]), Vec::new());
-        let mut stack = Stack::new(&mut held, &mut spilled);
+        let (mut held, mut spilled) = (Held::<_, STACK>::new(), Vec::new());
+        let mut stack = Stack::on(&mut held, &mut spilled);
         let mut offered = [u32::MAX; MAILBOXES];
         let mut at = 0;
         loop {

@@ -111,8 +111,7 @@ impl MeshShape {
 
     #[inline(always)]
     fn ordered(&self) -> Ordered<'_> {
-        let Mesh { triangles, positions, .. } = &*self.mesh;
-        Ordered { corners: &self.corners, triangles, vertices: positions, order: self.tree.order() }
+        Ordered { corners: &self.corners, mesh: &self.mesh, order: self.tree.order() }
     }
 
     #[inline(always)]

@@ -7,9 +7,9 @@ use glam::DVec3;
 
 /// How a ray's distances are those of a tree's frame, from where it starts, or from where it enters the tree's bounds if it starts farther off.
 pub struct Entry {
-    /// s = (t − start)·scale: distances from that point in the frame, by distances of the ray.
-    start: f64,
+    /// A distance t of the ray is within t·scale − start of that point in the frame, by [`SLACK`] and [`MARGIN`] more than it is.
     scale: f64,
+    start: f64,
 }
 
 /// Rays that start within this of a frame's middle along each axis need not be brought nearer.
@@ -64,11 +64,17 @@ pub fn rows_of(negative: u32) -> &'static Rows {
     &ROWS[negative as usize & 7]
 }
 
+/// A scale that makes distances longer than they are by [`SLACK`] and twice [`MARGIN`]: where a ray comes from afar products are subtracted that are rounded too.
+#[inline(always)]
+fn scale_and_more(scale: f64) -> f64 {
+    scale * (SLACK + 2.0 * MARGIN)
+}
+
 impl Entry {
     /// Of a ray that starts within [`NEAR`].
     #[inline(always)]
     pub fn at_start(tree: &Tree) -> Entry {
-        Entry { start: 0.0, scale: tree.frame.scale }
+        Entry { scale: scale_and_more(tree.frame.scale), start: 0.0 }
     }
 
     /// With the ray from there. None where it starts far off and misses the bounds before `t_max`, or starts nowhere. The largest coordinate of
@@ -94,13 +100,16 @@ impl Entry {
         // It lies within the bounds, whatever was lost on the way there.
         let point = point.clamp(DVec3::splat(-NEAR), DVec3::splat(NEAR));
         let margin = round_up(MARGIN * (travelled * scale + FRAME_SIZE)).min(MOST) + STEPS;
-        point.is_finite().then(|| (Entry { start, scale }, Narrow::new(point, margin, direction)))
+        point.is_finite().then(|| {
+            let entry = Entry { scale: scale_and_more(scale), start: (start * scale * SLACK).min(f64::MAX) };
+            (entry, Narrow::new(point, margin, direction))
+        })
     }
 
     /// A float at or beyond the distance t in the tree's frame: [`SLACK`] hides the rounding of the cast too, where a float has all its digits.
     #[inline(always)]
     pub fn limit(&self, t: f64) -> f32 {
-        (((t - self.start) * SLACK + t * MARGIN) * self.scale) as f32 + f32::MIN_POSITIVE
+        (t * self.scale - self.start) as f32 + f32::MIN_POSITIVE
     }
 }
 

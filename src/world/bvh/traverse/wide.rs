@@ -27,7 +27,14 @@ pub(super) fn walk(
         };
     }
     if let Some((entry, narrow)) = Entry::entered(tree, ray, t_max) {
-        super::walk(tree, entry, t_max, |node, limit| meets(&narrow, node, limit), stored, leaf);
+        super::walk(
+            tree,
+            entry,
+            t_max,
+            (|limit| limit, |node, limit| meets(&narrow, node, limit)),
+            stored,
+            leaf,
+        );
     }
 }
 
@@ -50,7 +57,14 @@ pub(super) fn walk_any(
         };
     }
     if let Some((entry, narrow)) = Entry::entered(tree, ray, t_max) {
-        super::walk_any(tree, entry, t_max, |node, limit| meets(&narrow, node, limit), stored, leaf);
+        super::walk_any(
+            tree,
+            entry,
+            t_max,
+            (|limit| limit, |node, limit| meets(&narrow, node, limit)),
+            stored,
+            leaf,
+        );
     }
 }
 
@@ -78,7 +92,7 @@ fn meets_by(ray: &Narrow, node: &Node, limit: f32, at: impl Fn(f32, f32, f32) ->
             far[i] = if y < far[i] { y } else { far[i] };
         }
     }
-    let mask = (0..WIDTH).fold(0, |mask, i| mask | u32::from(near[i] <= far[i]) << i);
+    let mask = (0..WIDTH).fold(0, |mask, i| mask | u32::from(near[i] < far[i]) << i);
     (mask, near)
 }
 
@@ -172,7 +186,15 @@ mod x86 {
         leaf: &mut impl FnMut(Range<usize>, f64) -> f64,
     ) {
         let Some((entry, narrow)) = entered(tree, ray, t_max) else { return };
-        super::super::walk(tree, entry, t_max, |node, limit| narrow.meets(node, limit), stored, leaf);
+        let limit_of = |limit| _mm256_castps_si256(_mm256_set1_ps(limit));
+        super::super::walk(
+            tree,
+            entry,
+            t_max,
+            (limit_of, |node, limit| narrow.meets(node, limit)),
+            stored,
+            leaf,
+        );
     }
 
     #[target_feature(enable = "avx2,bmi1,bmi2,fma")]
@@ -185,7 +207,15 @@ mod x86 {
         leaf: &mut impl FnMut(Range<usize>) -> bool,
     ) {
         let Some((entry, narrow)) = entered(tree, ray, t_max) else { return };
-        super::super::walk_any(tree, entry, t_max, |node, limit| narrow.meets(node, limit), stored, leaf);
+        let limit_of = |limit| _mm256_castps_si256(_mm256_set1_ps(limit));
+        super::super::walk_any(
+            tree,
+            entry,
+            t_max,
+            (limit_of, |node, limit| narrow.meets(node, limit)),
+            stored,
+            leaf,
+        );
     }
 
     /// [`Narrow`], each number eight times.
@@ -253,19 +283,21 @@ mod x86 {
             }
         }
 
-        /// [`super::meets`], eight children at once. The larger and the smaller of two give their second operand where one is NaN, as
-        /// the comparisons there do.
+        /// [`super::meets`], eight children at once. Distances are compared as whole numbers, which takes a quarter of the time: none is NaN, those below 0 are
+        /// below all others, and margins keep the two sides of what is met apart.
         #[target_feature(enable = "avx2,bmi1,bmi2,fma")]
         #[inline]
-        fn meets(&self, node: &Node, limit: f32) -> Met {
-            let (mut near, mut far) = (_mm256_setzero_ps(), _mm256_set1_ps(limit));
+        fn meets(&self, node: &Node, limit: __m256i) -> Met {
+            let (mut near, mut far) = (_mm256_setzero_si256(), limit);
             for a in 0..3 {
                 let [enter, leave] = self.rows[a].map(|row| load_8(node.row(row)));
-                near = _mm256_max_ps(_mm256_fmadd_ps(enter, self.inverse[a], self.near[a]), near);
-                far = _mm256_min_ps(_mm256_fmadd_ps(leave, self.inverse[a], self.far[a]), far);
+                let enter = _mm256_fmadd_ps(enter, self.inverse[a], self.near[a]);
+                let leave = _mm256_fmadd_ps(leave, self.inverse[a], self.far[a]);
+                near = _mm256_max_epi32(_mm256_castps_si256(enter), near);
+                far = _mm256_min_epi32(_mm256_castps_si256(leave), far);
             }
-            let mask = _mm256_movemask_ps(_mm256_cmp_ps::<_CMP_LE_OQ>(near, far));
-            (mask as u32, store_8(near))
+            let mask = _mm256_movemask_ps(_mm256_castsi256_ps(_mm256_cmpgt_epi32(far, near)));
+            (mask as u32, store_8(_mm256_castsi256_ps(near)))
         }
     }
 }
@@ -294,7 +326,7 @@ mod tests {
             let mut to_plain = |range, t_max| noted(&mut by_plain, range, t_max);
             if let Some((entry, narrow)) = Entry::entered(&tree, [&origin, &direction], 1e3) {
                 let meets = |node: &Node, limit| meets_fused(&narrow, node, limit);
-                super::super::walk(&tree, entry, 1e3, meets, Stored::NOWHERE, &mut to_plain);
+                super::super::walk(&tree, entry, 1e3, (|limit| limit, meets), Stored::NOWHERE, &mut to_plain);
             }
             walk(&tree, [&origin, &direction], 1e3, Stored::NOWHERE, &mut |range, t_max| {
                 noted(&mut by_wide, range, t_max)

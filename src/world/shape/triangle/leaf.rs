@@ -84,7 +84,8 @@ impl Corners {
     /// True where all coordinates are those of the vertices.
     #[inline(always)]
     pub fn are_exact(&self) -> bool {
-        self.error == 0.0
+        // Not as numbers, which are asked for twice.
+        self.error.to_bits() == 0
     }
 
     /// Memory, bytes.

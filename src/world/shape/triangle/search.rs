@@ -10,6 +10,7 @@ mod wide;
 
 use super::Sheared;
 use super::leaf::{AT_ONCE, Corners};
+use crate::geometry::mesh::Mesh;
 use crate::world::bvh::Stored;
 use crate::world::packet::{Members, Packet, RAYS};
 use crate::world::shape::{LocalRay, Meet};
@@ -22,10 +23,8 @@ use std::ops::Range;
 pub struct Ordered<'m> {
     /// Their corners, four by four.
     pub corners: &'m Corners,
-    /// By number, and what they name.
-    pub triangles: &'m [[u32; 3]],
-    /// See `triangles`.
-    pub vertices: &'m [DVec3],
+    /// By number.
+    pub mesh: &'m Mesh,
     /// The triangle at each position.
     pub order: &'m [u32],
 }
@@ -37,8 +36,7 @@ impl Ordered<'_> {
         if self.corners.are_exact() {
             return self.corners.fours[position / AT_ONCE].triangle(position % AT_ONCE);
         }
-        let [a, b, c] = self.triangles[self.order[position] as usize];
-        [self.vertices[a as usize], self.vertices[b as usize], self.vertices[c as usize]]
+        self.mesh.triangles[self.order[position] as usize].map(|i| self.mesh.positions[i as usize])
     }
 
     /// The nearest meeting at a distance in (0, limit], or any, and its position in the order of this tree; of equally near ones the first triangle.

@@ -131,9 +131,8 @@ impl Framed {
         stored: Stored,
         leaf: &mut impl FnMut(Range<usize>, Members, &mut Limits),
     ) {
-        let nothing = Pending { near: 0.0, child: Child::NONE, members: Members(0) };
-        let (mut held, mut spilled) = (Held([nothing; STACK]), Vec::new());
-        let mut stack = Stack::new(&mut held, &mut spilled);
+        let (mut held, mut spilled) = (Held::<_, STACK>::new(), Vec::new());
+        let mut stack = Stack::on(&mut held, &mut spilled);
         let mut limit = greatest_limit(limits);
         let mut at = Pending { near: 0.0, child: Child::node(0), members };
         loop {
@@ -141,7 +140,7 @@ impl Framed {
                 leaf(items, at.members, limits);
                 limit = greatest_limit(limits);
             } else {
-                let node = &nodes[at.child.place()];
+                let node = at.child.node_of(nodes);
                 let from_planes = self.measure(node);
                 let (mut met, near) = self.meets(&from_planes, limit);
                 let bottom = stack.len();

@@ -27,9 +27,15 @@ impl Start {
     /// Of rays from one point that have their largest axis in common, among corners that are `EXACT` or not.
     #[target_feature(enable = "avx2,bmi1,bmi2,fma")]
     #[inline]
-    pub fn new<const EXACT: bool>(corners: &Corners, origin: DVec3, axes: [usize; 3]) -> Start {
-        let from = if EXACT { origin } else { origin - corners.origin };
-        let margin = if EXACT { 0.0 } else { margin(corners, from) };
+    pub fn new<const EXACT: bool>(corners: &Corners, origin: &DVec3, axes: [usize; 3]) -> Start {
+        let moved;
+        let (from, margin) = match EXACT {
+            true => (origin, 0.0),
+            false => {
+                moved = *origin - corners.origin;
+                (&moved, margin(corners, moved))
+            }
+        };
         // Axes of a vector are told apart by branches.
         let each: &[f64; 3] = from.as_ref();
         Start {

@@ -84,7 +84,7 @@ impl Group {
     #[inline]
     fn along<const EXACT: bool>(axis: usize, members: Members, among: &Ordered, packet: &Packet) -> Group {
         let axes = AXES[axis];
-        let start = Start::new::<EXACT>(among.corners, packet.origin, axes);
+        let start = Start::new::<EXACT>(among.corners, &packet.origin, axes);
         let mut shear = [[0.0; RAYS]; 3];
         if !members.is_empty() {
             let along = axes.map(|axis| &packet.directions[axis]);

@@ -22,7 +22,7 @@ pub(super) fn nearest(
     {
         // SAFETY: the processor has just been found to have what the function is compiled for.
         #[allow(unsafe_code, reason = "code for instructions that not every processor has")]
-        return unsafe { x86::nearest_walked(&among, tree, ray, limit, any) };
+        return unsafe { x86::nearest_walked(&among, tree, ray, limit, any) }.get();
     }
     nearest_otherwise(among, tree, ray, limit, any)
 }
@@ -42,9 +42,9 @@ fn nearest_otherwise(
         #[allow(unsafe_code, reason = "code for instructions that not every processor has")]
         unsafe {
             match tree {
-                Tree::KdTree(tree) => return x86::nearest_walked(&among, tree, ray, limit, any),
+                Tree::KdTree(tree) => return x86::nearest_walked(&among, tree, ray, limit, any).get(),
                 Tree::Bvh(tree) if tree.node_count() == 0 => {
-                    return x86::nearest_walked(&among, &(0..among.order.len()), ray, limit, any);
+                    return x86::nearest_walked(&among, &(0..among.order.len()), ray, limit, any).get();
                 }
                 Tree::Bvh(_) => {}
             }
@@ -102,7 +102,7 @@ mod x86 {
         ray: &LocalRay,
         limit: f64,
         any: bool,
-    ) -> Option<(usize, Meet)> {
+    ) -> Found {
         let LocalRay { origin: o, direction: d } = ray;
         // SAFETY: it has.
         unsafe { nearest(among, tree, o.x, o.y, o.z, d.x, d.y, d.z, limit, any) }
@@ -122,7 +122,7 @@ mod x86 {
         along_z: f64,
         limit: f64,
         any: bool,
-    ) -> Option<(usize, Meet)> {
+    ) -> Found {
         let (origin, direction) = (DVec3::new(x, y, z), DVec3::new(along_x, along_y, along_z));
         let ray = &LocalRay { origin, direction };
         match (among.corners.are_exact(), any) {
@@ -139,9 +139,9 @@ mod x86 {
         tree: &W,
         ray: &LocalRay,
         limit: f64,
-    ) -> Option<(usize, Meet)> {
+    ) -> Found {
         let Sheared { axes, shear: [x, y, per_depth], .. } = Sheared::new(ray);
-        let start = Start::new::<EXACT>(among.corners, ray.origin, axes);
+        let start = Start::new::<EXACT>(among.corners, &ray.origin, axes);
         let shear = [x, y].map(|x| _mm256_set1_pd(x));
         let fours = &among.corners.fours[..];
         // Each four that a range touches. What else is in it are triangles too.
@@ -163,7 +163,7 @@ mod x86 {
         unsafe {
             tree.walk::<ANY>(ray, Stored::of(fours, AT_ONCE), &mut found, look);
         }
-        found.get()
+        found
     }
 
     /// Which lanes of the four at a place belong to a range that touches it, as bits.
@@ -177,6 +177,7 @@ mod x86 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::geometry::mesh::Mesh;
     use crate::math::random::Random;
     use crate::scene::Accelerator;
     use crate::world::shape::triangle::leaf::Corners;
@@ -213,6 +214,10 @@ mod tests {
         corners
     }
 
+    fn mesh_of(positions: Vec<DVec3>) -> Mesh {
+        Mesh { positions, triangles: TRIANGLES.to_vec(), ..Mesh::default() }
+    }
+
     fn bits(met: Option<(usize, Meet)>) -> Option<(usize, [u64; 3])> {
         met.map(|(at, m)| (at, [m.t, m.a, m.b].map(f64::to_bits)))
     }
@@ -232,8 +237,7 @@ mod tests {
                     |i, cell| cut::cut(of(i), cell),
                 );
                 let corners = &corners(round, &vertices, tree.order());
-                let among =
-                    Ordered { corners, triangles: &TRIANGLES, vertices: &vertices, order: tree.order() };
+                let among = Ordered { corners, mesh: &mesh_of(vertices), order: tree.order() };
                 for any in [false, true] {
                     let plain = bits(among.nearest_plain(&tree, &ray, f64::MAX, any));
                     let wide = bits(among.nearest(&tree, &ray, f64::MAX, any));
@@ -256,7 +260,7 @@ mod tests {
             let (vertices, Some(ray)) = triangles(round, &mut random) else { continue };
             let order: Vec<u32> = (0..10).rev().collect();
             let corners = &corners(round, &vertices, &order);
-            let among = Ordered { corners, triangles: &TRIANGLES, vertices: &vertices, order: &order };
+            let among = Ordered { corners, mesh: &mesh_of(vertices), order: &order };
             let range = (random.unit() * 10.0) as usize..10;
             let range = range.start..range.end.min(range.start + 1 + (random.unit() * 5.0) as usize);
             for any in [false, true] {
@@ -265,7 +269,7 @@ mod tests {
                 let plain = bits(search.found.get());
                 // SAFETY: the processor has just been found to have what the function is compiled for.
                 #[allow(unsafe_code, reason = "code for instructions that not every processor has")]
-                let wide = unsafe { x86::nearest_walked(&among, &range, &ray, f64::MAX, any) };
+                let wide = unsafe { x86::nearest_walked(&among, &range, &ray, f64::MAX, any) }.get();
                 assert_eq!(bits(wide), plain, "round {round}, {range:?}");
                 n_met += usize::from(plain.is_some());
             }
@@ -290,7 +294,7 @@ mod tests {
             let Some((ray, _)) = LocalRay::new(from, aim - from) else { continue };
             let corners = &Corners::new(&vertices, order.iter().map(|&i| TRIANGLES[i as usize]));
             assert!(!corners.are_exact(), "round {round}");
-            let among = Ordered { corners, triangles: &TRIANGLES, vertices: &vertices, order: &order };
+            let among = Ordered { corners, mesh: &mesh_of(vertices), order: &order };
             let plain = bits(among.nearest_plain(&list, &ray, f64::MAX, false));
             assert_eq!(bits(among.nearest(&list, &ray, f64::MAX, false)), plain, "round {round}");
             n_met += usize::from(plain.is_some());
