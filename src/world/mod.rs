@@ -22,6 +22,7 @@ pub mod lower;
 pub mod packet;
 mod place;
 mod query;
+mod roomy;
 pub mod shape;
 mod stack;
 pub mod texture;

@@ -20,6 +20,7 @@ use super::frame::Frame;
 use super::survey::{BY_ONE_THREAD, is_usable, survey};
 use super::{Child, Node, Pricing, Tree};
 use crate::math::Aabb;
+use crate::world::roomy::{settled, with_room};
 use boxes::{Box32, Boxed, Item};
 use rayon::prelude::*;
 use split::{Bins, Part};
@@ -52,7 +53,7 @@ fn put(node: &mut Node, slot: usize, bounds: &Box32, child: Child) {
 
 /// The tree of nodes over items in their order; those without a finite box follow it.
 fn finish(ready: Prepared, mut nodes: Vec<Node>, order: Vec<u32>, at_once: usize) -> Tree {
-    nodes.shrink_to_fit();
+    nodes = settled(nodes);
     let spread = (!nodes.is_empty() && at_once > 1).then(|| aligned(&mut nodes, &order, at_once));
     // Beyond what a leaf can name every item is offered to every ray: slow, but whole.
     if spread.as_ref().unwrap_or(&order).len() > Child::MOST {
@@ -69,7 +70,7 @@ fn finish(ready: Prepared, mut nodes: Vec<Node>, order: Vec<u32>, at_once: usize
 /// The order in which every leaf begins at a multiple of a number, its last item repeated up to the next.
 fn aligned(nodes: &mut [Node], order: &[u32], at_once: usize) -> Vec<u32> {
     // A leaf has some places to spare.
-    let mut all = Vec::with_capacity(order.len() + order.len() / 3);
+    let mut all = with_room(order.len() + order.len() / 3);
     for node in nodes {
         for child in &mut node.children {
             let Some(items) = child.items() else { continue };

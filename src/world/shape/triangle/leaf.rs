@@ -6,6 +6,7 @@
 //! measured from the middle and rounded, and propose which triangles a ray may meet; the vertices decide. Knows no tree.
 
 use crate::math::Aabb;
+use crate::world::roomy::with_room;
 use glam::DVec3;
 
 /// Triangles that are tested together: leaves that begin at multiples of it read the fewest.
@@ -59,7 +60,9 @@ const LEAST_STEP: f64 = f32::from_bits(1) as f64;
 impl Corners {
     /// Of triangles over vertices, which are finite, in their order.
     pub fn new(vertices: &[DVec3], triangles: impl ExactSizeIterator<Item = [u32; 3]>) -> Corners {
-        let mut fours = vec![Four([[0.0; AT_ONCE]; 9]); triangles.len().div_ceil(AT_ONCE)];
+        let n_fours = triangles.len().div_ceil(AT_ONCE);
+        let mut fours = with_room(n_fours);
+        fours.resize(n_fours, Four([[0.0; AT_ONCE]; 9]));
         let bounds = Aabb::of(vertices.iter().copied());
         let is_exact = |p: &DVec3| *p == p.as_vec3().as_dvec3();
         let (origin, size, error) = match vertices.iter().all(is_exact) {
