@@ -118,7 +118,7 @@ impl<'m> Subject<'m> {
     }
 
     /// The nearest meeting, or any: distance and triangle; of equally near ones the first triangle. None too for a line without direction.
-    #[inline]
+    #[inline(always)]
     pub fn meet(&self, line: &Line, any: bool) -> Option<(f64, u32)> {
         let Local { ray, per_line, limit } = Local::new(line)?;
         let met = self.ordered().nearest(&self.tree, &ray, limit, any);

@@ -24,7 +24,7 @@ pub(super) fn nearest(
         #[allow(unsafe_code, reason = "code for instructions that not every processor has")]
         return unsafe { x86::nearest_walked(&among, tree, ray, limit, any) }.get();
     }
-    nearest_otherwise(among, tree, ray, limit, any)
+    nearest_otherwise(among, tree, *ray, limit, any)
 }
 
 /// The same in any tree. Apart, so that the rest becomes a part of who asks.
@@ -32,10 +32,11 @@ pub(super) fn nearest(
 fn nearest_otherwise(
     among: Ordered,
     tree: &Tree,
-    ray: &LocalRay,
+    ray: LocalRay,
     limit: f64,
     any: bool,
 ) -> Option<(usize, Meet)> {
+    let ray = &ray;
     #[cfg(target_arch = "x86_64")]
     if crate::math::vectors::has_v3() {
         // SAFETY: the processor has just been found to have what the function is compiled for.
