@@ -3,7 +3,6 @@
 pub(super) mod packet;
 
 use super::aggregate::{Aggregate, Group, Item, MeshAggregate};
-use super::bvh::Stored;
 use super::shape::{Csg, LocalRay, Meet, Shape};
 use super::{Found, PrimitiveId, RayKind, World};
 use crate::scene::Hide;
@@ -127,14 +126,14 @@ impl<'w> Query<'w> {
     fn each(&mut self, group: &Group, local: &Local<'_>, test: impl Fn(&mut Self, Range<usize>)) {
         let LocalRay { origin, direction } = local.ray;
         let limit = self.limit * local.per_world;
-        let (tree, stored) = (&group.tree, Stored::of(&group.items, 1));
+        let tree = &group.tree;
         if self.any {
-            tree.traverse_any(origin, direction, limit, stored, |range| {
+            tree.traverse_any(origin, direction, limit, |range| {
                 test(self, range);
                 self.found.0.is_none()
             });
         } else {
-            tree.traverse(origin, direction, limit, stored, |range, _| {
+            tree.traverse(origin, direction, limit, |range, _| {
                 test(self, range);
                 self.limit * local.per_world
             });

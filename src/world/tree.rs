@@ -3,7 +3,7 @@
 #[cfg(test)]
 pub(super) mod tests;
 
-use super::bvh::{self, Limits, Stored};
+use super::bvh::{self, Limits};
 use super::kdtree;
 use super::packet::{Members, Packet, RAYS};
 use crate::math::Aabb;
@@ -85,19 +85,17 @@ impl Tree {
     }
 
     /// Offers to `leaf` every range of [`Tree::order`] that the ray may meet before `t_max`, near ones first, some items perhaps more than once.
-    /// `leaf` gives the distance beyond which nothing matters any more (so far); a negative one ends the traversal. `stored` says where the items
-    /// stand, if anywhere, so that they are brought near ahead.
+    /// `leaf` gives the distance beyond which nothing matters any more (so far); a negative one ends the traversal.
     #[inline(always)]
     pub fn traverse(
         &self,
         origin: &DVec3,
         direction: &DVec3,
         t_max: f64,
-        stored: Stored,
         leaf: impl FnMut(Range<usize>, f64) -> f64,
     ) {
         match self {
-            Tree::Bvh(tree) => tree.traverse(origin, direction, t_max, stored, leaf),
+            Tree::Bvh(tree) => tree.traverse(origin, direction, t_max, leaf),
             Tree::KdTree(tree) => tree.traverse(*origin, *direction, t_max, leaf),
         }
     }
@@ -109,11 +107,10 @@ impl Tree {
         &self,
         rays: (&Packet, Members),
         limits: &[f64; RAYS],
-        stored: Stored,
         leaf: impl FnMut(Range<usize>, Members, &mut Limits),
     ) -> Option<()> {
         match self {
-            Tree::Bvh(tree) => tree.traverse_each(rays, limits, stored, leaf),
+            Tree::Bvh(tree) => tree.traverse_each(rays, limits, leaf),
             Tree::KdTree(_) => None,
         }
     }
@@ -125,11 +122,10 @@ impl Tree {
         origin: &DVec3,
         direction: &DVec3,
         t_max: f64,
-        stored: Stored,
         mut leaf: impl FnMut(Range<usize>) -> bool,
     ) {
         match self {
-            Tree::Bvh(tree) => tree.traverse_any(origin, direction, t_max, stored, leaf),
+            Tree::Bvh(tree) => tree.traverse_any(origin, direction, t_max, leaf),
             Tree::KdTree(tree) => tree
                 .traverse(*origin, *direction, t_max, |range, t_max| if leaf(range) { t_max } else { -1.0 }),
         }
@@ -139,7 +135,7 @@ impl Tree {
     /// to go on.
     pub fn traverse_all(&self, origin: DVec3, direction: DVec3, mut leaf: impl FnMut(Range<usize>) -> bool) {
         match self {
-            Tree::Bvh(tree) => tree.traverse_any(&origin, &direction, f64::MAX, Stored::NOWHERE, leaf),
+            Tree::Bvh(tree) => tree.traverse_any(&origin, &direction, f64::MAX, leaf),
             Tree::KdTree(tree) => {
                 let mut all = Vec::new();
                 tree.traverse(origin, direction, f64::MAX, |range, t_max| {

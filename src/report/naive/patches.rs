@@ -4,7 +4,7 @@ use super::shapes::{Line, triangle_moller_trumbore};
 use crate::geometry::patch::tessellate::{Steps, dice};
 use crate::geometry::patch::{Bicubic, Patch};
 use crate::math::Aabb;
-use crate::world::bvh::{Stored, Tree};
+use crate::world::bvh::Tree;
 use glam::DVec3;
 
 /// Steps before Newton is given up, and the distance from the ray that is taken for a hit.
@@ -53,7 +53,7 @@ impl Diced {
     /// The nearest triangle's distance.
     pub fn meet(&self, line: &Line) -> Option<f64> {
         let mut best = f64::INFINITY;
-        self.tree.traverse(&line.origin, &line.direction, f64::INFINITY, Stored::NOWHERE, |range, _| {
+        self.tree.traverse(&line.origin, &line.direction, f64::INFINITY, |range, _| {
             for &i in &self.tree.order()[range] {
                 if let Some(t) = triangle_moller_trumbore(line, self.triangles[i as usize]) {
                     best = best.min(t);

@@ -4,6 +4,8 @@
 //! Boxes are f32 in the tree's own `Frame` (the tree's middle at 0, its size about 1), so that a small thing far from the
 //! origin, and a scene at any scale, has boxes as tight as any other. They are rounded outward, rays are rounded so that they
 //! meet more rather than less, and so a box never hides what an exact test inside it would find.
+//!
+//! One of the rooms with unsafe code: what builders see to, that rows and children are there, is asked nowhere again.
 
 mod build;
 mod cost;
@@ -13,8 +15,8 @@ pub(super) mod survey;
 mod tests;
 mod traverse;
 
+pub use traverse::clip;
 pub(in crate::world) use traverse::{Limits, fetch_entry};
-pub use traverse::{Stored, clip};
 
 use crate::math::Aabb;
 use frame::Frame;
@@ -136,7 +138,8 @@ impl Child {
             "{self:?} is none of {} nodes",
             nodes.len()
         );
-        // SAFETY: builders name nodes that there are. What a ray waits for at each node is where the next one stands, and so it is a shift and a sum.
+        // SAFETY: builders name nodes that there are, and who asks has seen that it is one. Where the next node stands is what a ray waits for, and so it is
+        // found by a shift and a sum.
         #[allow(unsafe_code, reason = "asking whether it is there takes longer than finding it")]
         unsafe {
             &*self.start_of(nodes)

@@ -1,6 +1,6 @@
 //! What is the hierarchy's own; what every tree must do is in the tests of [`crate::world::tree`].
 
-use super::{Pricing, Stored, Tree, clip};
+use super::{Pricing, Tree, clip};
 use crate::math::Aabb;
 use crate::math::exact::Double;
 use crate::math::random::Random;
@@ -10,7 +10,7 @@ use glam::DVec3;
 /// The items that a tree offers to a ray, sorted.
 fn offered(tree: &Tree, origin: DVec3, direction: DVec3, t_max: f64) -> Vec<u32> {
     let mut found = Vec::new();
-    tree.traverse(&origin, &direction, t_max, Stored::NOWHERE, |range, t| {
+    tree.traverse(&origin, &direction, t_max, |range, t| {
         found.extend_from_slice(&tree.order()[range]);
         t
     });
@@ -74,7 +74,7 @@ fn a_hit_in_the_first_box_does_not_hide_a_nearer_one_in_the_second() {
     let hits = [5.0, 3.0, 7.5];
     let tree = Tree::build(3, |i| boxes[i]);
     let mut best = f64::MAX;
-    tree.traverse(&DVec3::ZERO, &DVec3::X, f64::MAX, Stored::NOWHERE, |range, _| {
+    tree.traverse(&DVec3::ZERO, &DVec3::X, f64::MAX, |range, _| {
         for &i in &tree.order()[range] {
             best = best.min(hits[i as usize]);
         }

@@ -6,7 +6,7 @@ mod fetch;
 mod packet;
 mod wide;
 
-pub use fetch::Stored;
+use fetch::fetch;
 pub(in crate::world) use fetch::fetch_entry;
 pub(in crate::world) use packet::Limits;
 
@@ -129,18 +129,17 @@ fn enter(node: &Node, fetch: impl Fn(Child), stack: &mut Waiting, (mut met, near
 impl Tree {
     /// Offers to `leaf` every range of [`Tree::order`] that the ray may meet before `t_max`, near ones first. `leaf` gives the
     /// distance beyond which nothing matters any more (so far); a negative one ends the traversal. The largest
-    /// coordinate of the direction is at least ½ and does not reach 2. `stored` says where the items stand, if anywhere.
+    /// coordinate of the direction is at least ½ and does not reach 2.
     #[inline(always)]
     pub fn traverse(
         &self,
         origin: &DVec3,
         direction: &DVec3,
         t_max: f64,
-        stored: Stored,
         mut leaf: impl FnMut(Range<usize>, f64) -> f64,
     ) {
         if let Some(t_max) = self.offer_loose(t_max, &mut leaf) {
-            wide::walk(self, [origin, direction], t_max, stored, &mut leaf);
+            wide::walk(self, [origin, direction], t_max, &mut leaf);
         }
     }
 
@@ -151,12 +150,11 @@ impl Tree {
         origin: &DVec3,
         direction: &DVec3,
         t_max: f64,
-        stored: Stored,
         mut leaf: impl FnMut(Range<usize>) -> bool,
     ) {
         let mut loose = |range, t_max| if leaf(range) { t_max } else { -1.0 };
         if let Some(t_max) = self.offer_loose(t_max, &mut loose) {
-            wide::walk_any(self, [origin, direction], t_max, stored, &mut leaf);
+            wide::walk_any(self, [origin, direction], t_max, &mut leaf);
         }
     }
 
@@ -183,11 +181,10 @@ fn walk<L: Copy>(
     entry: Entry,
     mut t_max: f64,
     (limit_of, meets): (impl Fn(f32) -> L, impl Fn(&Node, L) -> Met),
-    stored: Stored,
     leaf: &mut impl FnMut(Range<usize>, f64) -> f64,
 ) {
     let nodes = &tree.nodes[..];
-    let fetch = |child: Child| stored.fetch(nodes, child);
+    let fetch = |child: Child| fetch(nodes, child);
     let limits = |t: f64| {
         let limit = entry.limit(t);
         (limit_of(limit), last_within(limit))
@@ -228,7 +225,6 @@ fn walk_any<L: Copy>(
     entry: Entry,
     t_max: f64,
     (limit_of, meets): (impl Fn(f32) -> L, impl Fn(&Node, L) -> Met),
-    stored: Stored,
     leaf: &mut impl FnMut(Range<usize>) -> bool,
 ) {
     let nodes = &tree.nodes[..];
@@ -243,7 +239,7 @@ fn walk_any<L: Copy>(
             child = node.children[take(&mut met)];
             while met != 0 {
                 let waiting = node.children[take(&mut met)];
-                stored.fetch(nodes, waiting);
+                fetch(nodes, waiting);
                 stack.push(waiting);
             }
         } else {

@@ -2,7 +2,6 @@
 
 use super::{Local, Query};
 use crate::world::aggregate::{Aggregate, Group, Instance, Item, MeshAggregate};
-use crate::world::bvh::Stored;
 use crate::world::packet::{Members, Packet, RAYS};
 use crate::world::{Found, RayKind, World};
 
@@ -67,9 +66,8 @@ impl<'w> Queries<'w> {
     }
 
     fn visit_group(&mut self, group: &'w Group, place: &Place<'_>) {
-        let stored = Stored::of(&group.items, 1);
         let (rays, limits) = ((place.packet, place.members), self.limits(place));
-        let together = group.tree.traverse_each(rays, &limits, stored, |range, members, limits| {
+        let together = group.tree.traverse_each(rays, &limits, |range, members, limits| {
             let place = Place { members, ..*place };
             range.for_each(|position| self.visit_position(group, position, &place));
             members.for_each(|i| limits.lower(i, self.0[i].limit * place.per_world[i]));

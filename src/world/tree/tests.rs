@@ -5,7 +5,7 @@ use crate::math::Aabb;
 use crate::math::exact::power_of_two;
 use crate::math::random::Random;
 use crate::scene::Accelerator;
-use crate::world::bvh::{Stored, clip};
+use crate::world::bvh::clip;
 use glam::DVec3;
 
 const ALL: [Accelerator; 3] = [Accelerator::Bvh, Accelerator::KdTree, Accelerator::None];
@@ -40,11 +40,11 @@ fn boxes_of(count: usize, offset: DVec3, seed: u64, size: impl Fn(usize) -> f64)
 /// The items that a tree offers to a ray, sorted: the same in either order.
 fn offered(tree: &Tree, origin: DVec3, direction: DVec3, t_max: f64) -> Vec<u32> {
     let (mut found, mut in_no_order) = (Vec::new(), Vec::new());
-    tree.traverse(&origin, &direction, t_max, Stored::NOWHERE, |range, t| {
+    tree.traverse(&origin, &direction, t_max, |range, t| {
         found.extend_from_slice(&tree.order()[range]);
         t
     });
-    tree.traverse_any(&origin, &direction, t_max, Stored::NOWHERE, |range| {
+    tree.traverse_any(&origin, &direction, t_max, |range| {
         in_no_order.extend_from_slice(&tree.order()[range]);
         true
     });
@@ -163,13 +163,13 @@ fn rays_whose_numbers_overflow_end() {
             (DVec3::splat(f64::INFINITY), -DVec3::ONE),
         ] {
             let mut n_offered = 0;
-            tree.traverse(&origin, &direction, f64::MAX, Stored::NOWHERE, |range, t| {
+            tree.traverse(&origin, &direction, f64::MAX, |range, t| {
                 n_offered += range.len();
                 assert!(n_offered <= most, "{accelerator:?} {origin} {direction}: it goes on");
                 t
             });
             let mut n_offered = 0;
-            tree.traverse_any(&origin, &direction, f64::MAX, Stored::NOWHERE, |range| {
+            tree.traverse_any(&origin, &direction, f64::MAX, |range| {
                 n_offered += range.len();
                 assert!(n_offered <= most, "{accelerator:?} {origin} {direction}: it goes on");
                 true

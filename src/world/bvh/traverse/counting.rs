@@ -3,7 +3,7 @@
 
 use super::entry::Entry;
 use super::wide::meets_fused;
-use super::{Met, Stored, walk, walk_any};
+use super::{Met, walk, walk_any};
 use crate::world::bvh::{Node, Tree};
 use glam::DVec3;
 use std::cell::Cell;
@@ -20,7 +20,7 @@ impl Tree {
     ) -> u64 {
         let Some(t_max) = self.offer_loose(t_max, &mut leaf) else { return 0 };
         self.counted([origin, direction], t_max, |entry, meets| {
-            walk(self, entry, t_max, (|limit| limit, meets), Stored::NOWHERE, &mut leaf)
+            walk(self, entry, t_max, (|limit| limit, meets), &mut leaf)
         })
     }
 
@@ -35,7 +35,7 @@ impl Tree {
         let mut loose = |range, t_max| if leaf(range) { t_max } else { -1.0 };
         let Some(t_max) = self.offer_loose(t_max, &mut loose) else { return 0 };
         self.counted([origin, direction], t_max, |entry, meets| {
-            walk_any(self, entry, t_max, (|limit| limit, meets), Stored::NOWHERE, &mut leaf);
+            walk_any(self, entry, t_max, (|limit| limit, meets), &mut leaf);
         })
     }
 

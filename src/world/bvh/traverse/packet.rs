@@ -5,8 +5,8 @@
 #[cfg(target_arch = "x86_64")]
 mod wide;
 
+use super::Tree;
 use super::entry::Entry;
-use super::{Stored, Tree};
 use crate::world::packet::{Members, Packet, RAYS};
 use std::ops::Range;
 
@@ -45,16 +45,15 @@ impl Tree {
         &self,
         rays: (&Packet, Members),
         t_max: &[f64; RAYS],
-        stored: Stored,
         leaf: impl FnMut(Range<usize>, Members, &mut Limits),
     ) -> Option<()> {
         #[cfg(target_arch = "x86_64")]
         if crate::math::vectors::has_v3() {
             // SAFETY: the processor has just been found to have what the function is compiled for.
             #[allow(unsafe_code, reason = "code for instructions that not every processor has")]
-            return unsafe { self.traverse_each_v3(rays, t_max, stored, leaf) };
+            return unsafe { self.traverse_each_v3(rays, t_max, leaf) };
         }
-        let _ = (rays, t_max, stored, leaf);
+        let _ = (rays, t_max, leaf);
         None
     }
 }

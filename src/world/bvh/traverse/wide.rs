@@ -4,7 +4,7 @@
 //! instructions.
 
 use super::entry::{Entry, Narrow};
-use super::{Met, Node, Stored, Tree, WIDTH};
+use super::{Met, Node, Tree, WIDTH};
 use glam::DVec3;
 use std::ops::Range;
 
@@ -14,7 +14,6 @@ pub(super) fn walk(
     tree: &Tree,
     ray: [&DVec3; 2],
     t_max: f64,
-    stored: Stored,
     leaf: &mut impl FnMut(Range<usize>, f64) -> f64,
 ) {
     #[cfg(target_arch = "x86_64")]
@@ -23,18 +22,11 @@ pub(super) fn walk(
         #[allow(unsafe_code, reason = "code for instructions that not every processor has")]
         return unsafe {
             let [o, d] = ray;
-            x86::walk(tree, o.x, o.y, o.z, d.x, d.y, d.z, t_max, stored, leaf)
+            x86::walk(tree, o.x, o.y, o.z, d.x, d.y, d.z, t_max, leaf)
         };
     }
     if let Some((entry, narrow)) = Entry::entered(tree, ray, t_max) {
-        super::walk(
-            tree,
-            entry,
-            t_max,
-            (|limit| limit, |node, limit| meets(&narrow, node, limit)),
-            stored,
-            leaf,
-        );
+        super::walk(tree, entry, t_max, (|limit| limit, |node, limit| meets(&narrow, node, limit)), leaf);
     }
 }
 
@@ -44,7 +36,6 @@ pub(super) fn walk_any(
     tree: &Tree,
     ray: [&DVec3; 2],
     t_max: f64,
-    stored: Stored,
     leaf: &mut impl FnMut(Range<usize>) -> bool,
 ) {
     #[cfg(target_arch = "x86_64")]
@@ -53,18 +44,11 @@ pub(super) fn walk_any(
         #[allow(unsafe_code, reason = "code for instructions that not every processor has")]
         return unsafe {
             let [o, d] = ray;
-            x86::walk_any(tree, o.x, o.y, o.z, d.x, d.y, d.z, t_max, stored, leaf)
+            x86::walk_any(tree, o.x, o.y, o.z, d.x, d.y, d.z, t_max, leaf)
         };
     }
     if let Some((entry, narrow)) = Entry::entered(tree, ray, t_max) {
-        super::walk_any(
-            tree,
-            entry,
-            t_max,
-            (|limit| limit, |node, limit| meets(&narrow, node, limit)),
-            stored,
-            leaf,
-        );
+        super::walk_any(tree, entry, t_max, (|limit| limit, |node, limit| meets(&narrow, node, limit)), leaf);
     }
 }
 
@@ -100,7 +84,8 @@ fn meets_by(ray: &Narrow, node: &Node, limit: f32, at: impl Fn(f32, f32, f32) ->
 mod x86 {
     use super::super::entry::{LEAST, NEAR, Rows, STEPS, rows_of};
     use super::*;
-    use crate::math::vectors::lanes::{load_3, load_8, store_8};
+    use crate::math::vectors::lanes::{load_8, store_8};
+    use crate::world::bvh::frame::Frame;
     use std::arch::x86_64::*;
 
     impl Tree {
@@ -113,11 +98,10 @@ mod x86 {
             origin: DVec3,
             direction: DVec3,
             t_max: f64,
-            stored: Stored,
             mut leaf: impl FnMut(Range<usize>, f64) -> f64,
         ) {
             if t_max >= 0.0 {
-                walk_v3(self, [origin, direction], t_max, stored, &mut leaf);
+                walk_v3(self, [origin, direction], t_max, &mut leaf);
             }
         }
 
@@ -129,11 +113,10 @@ mod x86 {
             origin: DVec3,
             direction: DVec3,
             t_max: f64,
-            stored: Stored,
             mut leaf: impl FnMut(Range<usize>) -> bool,
         ) {
             if t_max >= 0.0 {
-                walk_any_v3(self, [origin, direction], t_max, stored, &mut leaf);
+                walk_any_v3(self, [origin, direction], t_max, &mut leaf);
             }
         }
     }
@@ -150,11 +133,10 @@ mod x86 {
         along_y: f64,
         along_z: f64,
         t_max: f64,
-        stored: Stored,
         leaf: &mut impl FnMut(Range<usize>, f64) -> f64,
     ) {
         let ray = [DVec3::new(x, y, z), DVec3::new(along_x, along_y, along_z)];
-        walk_v3(tree, ray, t_max, stored, leaf);
+        walk_v3(tree, ray, t_max, leaf);
     }
 
     /// The same in no order.
@@ -169,53 +151,26 @@ mod x86 {
         along_y: f64,
         along_z: f64,
         t_max: f64,
-        stored: Stored,
         leaf: &mut impl FnMut(Range<usize>) -> bool,
     ) {
         let ray = [DVec3::new(x, y, z), DVec3::new(along_x, along_y, along_z)];
-        walk_any_v3(tree, ray, t_max, stored, leaf);
+        walk_any_v3(tree, ray, t_max, leaf);
     }
 
     #[target_feature(enable = "avx2,bmi1,bmi2,fma")]
     #[inline]
-    fn walk_v3(
-        tree: &Tree,
-        ray: [DVec3; 2],
-        t_max: f64,
-        stored: Stored,
-        leaf: &mut impl FnMut(Range<usize>, f64) -> f64,
-    ) {
+    fn walk_v3(tree: &Tree, ray: [DVec3; 2], t_max: f64, leaf: &mut impl FnMut(Range<usize>, f64) -> f64) {
         let Some((entry, narrow)) = entered(tree, ray, t_max) else { return };
         let limit_of = |limit| _mm256_castps_si256(_mm256_set1_ps(limit));
-        super::super::walk(
-            tree,
-            entry,
-            t_max,
-            (limit_of, |node, limit| narrow.meets(node, limit)),
-            stored,
-            leaf,
-        );
+        super::super::walk(tree, entry, t_max, (limit_of, |node, limit| narrow.meets(node, limit)), leaf);
     }
 
     #[target_feature(enable = "avx2,bmi1,bmi2,fma")]
     #[inline]
-    fn walk_any_v3(
-        tree: &Tree,
-        ray: [DVec3; 2],
-        t_max: f64,
-        stored: Stored,
-        leaf: &mut impl FnMut(Range<usize>) -> bool,
-    ) {
+    fn walk_any_v3(tree: &Tree, ray: [DVec3; 2], t_max: f64, leaf: &mut impl FnMut(Range<usize>) -> bool) {
         let Some((entry, narrow)) = entered(tree, ray, t_max) else { return };
         let limit_of = |limit| _mm256_castps_si256(_mm256_set1_ps(limit));
-        super::super::walk_any(
-            tree,
-            entry,
-            t_max,
-            (limit_of, |node, limit| narrow.meets(node, limit)),
-            stored,
-            leaf,
-        );
+        super::super::walk_any(tree, entry, t_max, (limit_of, |node, limit| narrow.meets(node, limit)), leaf);
     }
 
     /// [`Narrow`], each number eight times.
@@ -230,24 +185,26 @@ mod x86 {
     #[target_feature(enable = "avx2,bmi1,bmi2,fma")]
     #[inline]
     fn entered(tree: &Tree, [origin, direction]: [DVec3; 2], t_max: f64) -> Option<(Entry, Wide)> {
-        let four = |v: DVec3| _mm256_setr_pd(v.x, v.y, v.z, 0.0);
-        let from_center = _mm256_sub_pd(four(origin), load_3(tree.frame.center.as_ref()));
-        let point = _mm256_mul_pd(from_center, _mm256_set1_pd(tree.frame.scale));
+        let four = |v: DVec3, rest: f64| _mm256_setr_pd(v.x, v.y, v.z, rest);
+        // The fourth numbers mean nothing. What stands after the center is read with it.
+        let Frame { center, scale } = tree.frame;
+        let from_center = _mm256_sub_pd(four(origin, 0.0), four(center, scale));
+        let point = _mm256_mul_pd(from_center, _mm256_set1_pd(scale));
         let size = _mm256_andnot_pd(_mm256_set1_pd(-0.0), point);
-        let is_near = _mm256_cmp_pd::<_CMP_LE_OQ>(size, _mm256_set1_pd(NEAR));
-        if _mm256_movemask_pd(is_near) != 0b1111 {
+        let is_far = _mm256_cmp_pd::<_CMP_NLE_UQ>(size, _mm256_set1_pd(NEAR));
+        if _mm256_movemask_pd(is_far) & 0b111 != 0 {
             let (entry, narrow) = from_afar(tree, [origin, direction], t_max)?;
             return Some((entry, Wide::of(&narrow)));
         }
         let (sign, least, margin) = (_mm_set1_ps(-0.0), _mm_set1_ps(LEAST), _mm_set1_ps(STEPS));
-        let (from, along) = (_mm256_cvtpd_ps(point), _mm256_cvtpd_ps(four(direction)));
+        let (from, along) = (_mm256_cvtpd_ps(point), _mm256_cvtpd_ps(four(direction, 0.0)));
         let signs = _mm_and_ps(sign, along);
         let size = _mm_max_ps(_mm_andnot_ps(sign, along), least);
         let inverse = _mm_div_ps(_mm_set1_ps(1.0), _mm_or_ps(size, signs));
         let toward = _mm_or_ps(margin, signs);
-        let negated = |x| _mm_xor_ps(x, sign);
-        let near = _mm_mul_ps(negated(_mm_add_ps(from, toward)), inverse);
-        let far = _mm_mul_ps(negated(_mm_sub_ps(from, toward)), inverse);
+        let negated = _mm_xor_ps(inverse, sign);
+        let near = _mm_mul_ps(_mm_add_ps(from, toward), negated);
+        let far = _mm_mul_ps(_mm_sub_ps(from, toward), negated);
         let rows = rows_of(_mm_movemask_ps(along) as u32);
         let wide = Wide { inverse: spread(inverse), near: spread(near), far: spread(far), rows };
         Some((Entry::at_start(tree), wide))
@@ -326,11 +283,9 @@ mod tests {
             let mut to_plain = |range, t_max| noted(&mut by_plain, range, t_max);
             if let Some((entry, narrow)) = Entry::entered(&tree, [&origin, &direction], 1e3) {
                 let meets = |node: &Node, limit| meets_fused(&narrow, node, limit);
-                super::super::walk(&tree, entry, 1e3, (|limit| limit, meets), Stored::NOWHERE, &mut to_plain);
+                super::super::walk(&tree, entry, 1e3, (|limit| limit, meets), &mut to_plain);
             }
-            walk(&tree, [&origin, &direction], 1e3, Stored::NOWHERE, &mut |range, t_max| {
-                noted(&mut by_wide, range, t_max)
-            });
+            walk(&tree, [&origin, &direction], 1e3, &mut |range, t_max| noted(&mut by_wide, range, t_max));
             n_offered += by_plain.len();
             assert_eq!(by_wide, by_plain, "ray {i}");
         }

@@ -1,7 +1,7 @@
 //! The walk of a ray through the parts.
 
 use super::{COINCIDENT, Csg, Solid, Tally, doubt, reach};
-use crate::world::bvh::{Stored, clip};
+use crate::world::bvh::clip;
 use crate::world::shape::implicit::{Event, NOWHERE, Window};
 use crate::world::shape::{LocalRay, Meet, Shape, Surface};
 use std::cell::Cell;
@@ -305,7 +305,7 @@ impl Csg {
             }
         }
         if self.boxes.is_empty() {
-            self.tree.traverse(&ray.origin, &ray.direction, far, Stored::NOWHERE, |range, t_max| {
+            self.tree.traverse(&ray.origin, &ray.direction, far, |range, t_max| {
                 for position in range {
                     self.gather_part(self.tree.order()[position], ray, walk);
                 }

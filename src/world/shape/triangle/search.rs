@@ -11,7 +11,6 @@ mod wide;
 use super::Sheared;
 use super::leaf::{AT_ONCE, Corners};
 use crate::geometry::mesh::Mesh;
-use crate::world::bvh::Stored;
 use crate::world::packet::{Members, Packet, RAYS};
 use crate::world::shape::{LocalRay, Meet};
 use crate::world::tree::Tree;
@@ -75,13 +74,9 @@ impl Ordered<'_> {
     fn nearest_plain(self, tree: &Tree, ray: &LocalRay, limit: f64, any: bool) -> Option<(usize, Meet)> {
         let mut search = Search::new(self, ray, limit, any);
         if any {
-            tree.traverse_any(&ray.origin, &ray.direction, limit, Stored::NOWHERE, |range| {
-                search.goes_on(range)
-            });
+            tree.traverse_any(&ray.origin, &ray.direction, limit, |range| search.goes_on(range));
         } else {
-            tree.traverse(&ray.origin, &ray.direction, limit, Stored::NOWHERE, |range, _| {
-                search.limit_after(range)
-            });
+            tree.traverse(&ray.origin, &ray.direction, limit, |range, _| search.limit_after(range));
         }
         search.found.get()
     }

@@ -3,7 +3,8 @@
 //! methods for entire ray packets*, 2006), and those that it meets against each ray.
 
 use super::super::entry::{Entry, LEAST, NEAR, Rows, STEPS, rows_of};
-use super::super::{Child, Node, Stored, Tree, WIDTH, take};
+use super::super::fetch::fetch;
+use super::super::{Child, Node, Tree, WIDTH, take};
 use super::{BLOCKS, LANES, Limits};
 use crate::math::vectors::lanes::{load_8, narrow_8, store_8};
 use crate::world::packet::{Members, Packet, RAYS};
@@ -48,7 +49,6 @@ impl Tree {
         &self,
         (packet, members): (&Packet, Members),
         t_max: &[f64; RAYS],
-        stored: Stored,
         mut leaf: impl FnMut(Range<usize>, Members, &mut Limits),
     ) -> Option<()> {
         // Where there are no nodes, all hangs under none.
@@ -58,7 +58,7 @@ impl Tree {
             leaf(self.bounded..self.order.len(), members, &mut limits);
         }
         if let Some(framed) = framed {
-            framed.walk(&self.nodes, members, &mut limits, stored, &mut leaf);
+            framed.walk(&self.nodes, members, &mut limits, &mut leaf);
         }
         Some(())
     }
@@ -128,7 +128,6 @@ impl Framed {
         nodes: &[Node],
         members: Members,
         limits: &mut Limits,
-        stored: Stored,
         leaf: &mut impl FnMut(Range<usize>, Members, &mut Limits),
     ) {
         let (mut held, mut spilled) = (Held::<_, STACK>::new(), Vec::new());
@@ -149,7 +148,7 @@ impl Framed {
                     let members = at.members.among(self.who_meets(&from_planes, slot, limits));
                     if !members.is_empty() {
                         let child = node.children[slot];
-                        stored.fetch(nodes, child);
+                        fetch(nodes, child);
                         stack.push_above(bottom, Pending { near: near[slot], child, members });
                     }
                 }

@@ -4,7 +4,7 @@
 use super::four::{FromStart, Start};
 use super::{Found, Ordered};
 use crate::math::vectors::lanes::{load_4, store_4};
-use crate::world::bvh::{self, Limits, Stored};
+use crate::world::bvh::{self, Limits};
 use crate::world::packet::{Members, Packet, RAYS};
 use crate::world::shape::triangle::AXES;
 use crate::world::shape::triangle::leaf::AT_ONCE;
@@ -47,7 +47,7 @@ pub(super) fn nearest<const EXACT: bool>(
             }
         }
     };
-    tree.traverse_each_v3((packet, members), limits, Stored::of(fours, AT_ONCE), look)
+    tree.traverse_each_v3((packet, members), limits, look)
 }
 
 /// The rays of a packet that have the same largest axis: what [`Sheared`](super::Sheared) is to one.

@@ -2,7 +2,7 @@
 //! what both need stays in registers.
 
 use super::Found;
-use crate::world::bvh::{self, Stored};
+use crate::world::bvh;
 use crate::world::kdtree;
 use crate::world::shape::LocalRay;
 use std::ops::Range;
@@ -22,7 +22,6 @@ pub(super) trait Walked {
     unsafe fn walk<const ANY: bool>(
         &self,
         ray: &LocalRay,
-        stored: Stored,
         found: &mut Found,
         look: impl Fn(&mut Found, Range<usize>) -> bool,
     );
@@ -38,15 +37,14 @@ impl Walked for bvh::Tree {
     unsafe fn walk<const ANY: bool>(
         &self,
         ray: &LocalRay,
-        stored: Stored,
         found: &mut Found,
         look: impl Fn(&mut Found, Range<usize>) -> bool,
     ) {
         let (LocalRay { origin, direction }, limit) = (*ray, found.limit);
         if ANY {
-            self.traverse_any_v3(origin, direction, limit, stored, |range| look(found, range));
+            self.traverse_any_v3(origin, direction, limit, |range| look(found, range));
         } else {
-            self.traverse_v3(origin, direction, limit, stored, |range, _| {
+            self.traverse_v3(origin, direction, limit, |range, _| {
                 look(found, range);
                 found.limit
             });
@@ -63,7 +61,6 @@ impl Walked for kdtree::Tree {
     unsafe fn walk<const ANY: bool>(
         &self,
         ray: &LocalRay,
-        _: Stored,
         found: &mut Found,
         look: impl Fn(&mut Found, Range<usize>) -> bool,
     ) {
@@ -90,7 +87,6 @@ impl Walked for Range<usize> {
     unsafe fn walk<const ANY: bool>(
         &self,
         _: &LocalRay,
-        _: Stored,
         found: &mut Found,
         look: impl Fn(&mut Found, Range<usize>) -> bool,
     ) {

@@ -85,7 +85,6 @@ mod x86 {
     use super::super::four::{FromStart, Start};
     use super::super::walked::Walked;
     use super::*;
-    use crate::world::bvh::Stored;
     use crate::world::shape::triangle::Sheared;
     use crate::world::shape::triangle::leaf::AT_ONCE;
     use glam::DVec3;
@@ -162,7 +161,7 @@ mod x86 {
         // SAFETY: this function is compiled for the same instructions.
         #[allow(unsafe_code, reason = "a trait has no other functions for some processors")]
         unsafe {
-            tree.walk::<ANY>(ray, Stored::of(fours, AT_ONCE), &mut found, look);
+            tree.walk::<ANY>(ray, &mut found, look);
         }
         found
     }
