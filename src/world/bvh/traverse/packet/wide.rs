@@ -173,16 +173,15 @@ impl Framed {
     #[target_feature(enable = "avx2,bmi1,bmi2,fma")]
     #[inline]
     fn meets(&self, from_planes: &[[[f32; WIDTH]; 3]; 2], limit: __m256) -> (u32, [f32; WIDTH]) {
-        let (mut near, mut far) = (_mm256_setzero_ps(), limit);
+        let (mut near, mut far) = (_mm256_setzero_si256(), _mm256_castps_si256(limit));
         for a in 0..3 {
             let [least, greatest] = self.between[a];
             let (enter, leave) = (load_8(&from_planes[0][a]), load_8(&from_planes[1][a]));
-            let first = _mm256_min_ps(_mm256_mul_ps(enter, least), _mm256_mul_ps(enter, greatest));
-            let last = _mm256_max_ps(_mm256_mul_ps(leave, least), _mm256_mul_ps(leave, greatest));
-            (near, far) = (_mm256_max_ps(first, near), _mm256_min_ps(last, far));
+            let first = _mm256_min_epi32(times(enter, least), times(enter, greatest));
+            let last = _mm256_max_epi32(times(leave, least), times(leave, greatest));
+            (near, far) = (_mm256_max_epi32(first, near), _mm256_min_epi32(last, far));
         }
-        let mask = _mm256_movemask_ps(_mm256_cmp_ps::<_CMP_LE_OQ>(near, far));
-        (mask as u32, store_8(near))
+        (less(near, far), store_8(_mm256_castsi256_ps(near)))
     }
 
     /// The rays that meet a child.
@@ -194,17 +193,31 @@ impl Framed {
         let leave = [plane(1, 0), plane(1, 1), plane(1, 2)];
         let mut members = 0;
         for block in 0..BLOCKS {
-            let (mut near, mut far) = (_mm256_setzero_ps(), load_8(&limits.each[block]));
+            let limit = _mm256_castps_si256(load_8(&limits.each[block]));
+            let (mut near, mut far) = (_mm256_setzero_si256(), limit);
             for a in 0..3 {
                 let inverse = load_8(&self.inverse[a][block]);
-                near = _mm256_max_ps(_mm256_mul_ps(enter[a], inverse), near);
-                far = _mm256_min_ps(_mm256_mul_ps(leave[a], inverse), far);
+                near = _mm256_max_epi32(times(enter[a], inverse), near);
+                far = _mm256_min_epi32(times(leave[a], inverse), far);
             }
-            let mask = _mm256_movemask_ps(_mm256_cmp_ps::<_CMP_LE_OQ>(near, far));
-            members |= (mask as u32) << (LANES * block);
+            members |= less(near, far) << (LANES * block);
         }
         Members(members)
     }
+}
+
+/// Products as whole numbers, as which distances are compared: none is NaN, and where one is below 0 it matters only that it is.
+#[target_feature(enable = "avx2,bmi1,bmi2,fma")]
+#[inline]
+fn times(x: __m256, y: __m256) -> __m256i {
+    _mm256_castps_si256(_mm256_mul_ps(x, y))
+}
+
+/// Where one is less than the other, as bits.
+#[target_feature(enable = "avx2,bmi1,bmi2,fma")]
+#[inline]
+fn less(near: __m256i, far: __m256i) -> u32 {
+    _mm256_movemask_ps(_mm256_castsi256_ps(_mm256_cmpgt_epi32(far, near))) as u32
 }
 
 /// The farthest that any ray matters, in every lane.
