@@ -76,16 +76,34 @@ impl World {
     }
 
     /// The way into a placement.
-    fn path_into(&self, mut id: u64) -> Path<'_> {
-        let mut path = Path { steps: Steps::None, aggregate: &self.aggregates[0] };
-        while let Aggregate::Group(group) = path.aggregate
-            && let Some((position, instance)) = group.placement(id)
-        {
-            id -= instance.first;
-            path.steps.push(Step { group, item: group.number_of(position), instance });
-            path.aggregate = &self.aggregates[instance.aggregate as usize];
+    fn path_into(&self, id: u64) -> Path<'_> {
+        let whole = &self.aggregates[0];
+        match self.step(whole, id) {
+            None => Path { steps: Steps::None, aggregate: whole },
+            // Most of what is placed is placed once.
+            Some((step, aggregate, 0)) => Path { steps: Steps::One([step]), aggregate },
+            Some((step, aggregate, id)) => self.path_on(step, aggregate, id),
+        }
+    }
+
+    /// The way from a first placement on into others.
+    #[inline(never)]
+    fn path_on<'w>(&'w self, first: Step<'w>, aggregate: &'w Aggregate, mut id: u64) -> Path<'w> {
+        let mut path = Path { steps: Steps::One([first]), aggregate };
+        while let Some((step, aggregate, rest)) = self.step(path.aggregate, id) {
+            path.steps.push(step);
+            (path.aggregate, id) = (aggregate, rest);
         }
         path
+    }
+
+    /// The placement that holds, or is, the one numbered `id` from an aggregate, what is placed by it, and the number from there.
+    #[inline]
+    fn step<'w>(&'w self, aggregate: &'w Aggregate, id: u64) -> Option<(Step<'w>, &'w Aggregate, u64)> {
+        let Aggregate::Group(group) = aggregate else { return None };
+        let (position, instance) = group.placement(id)?;
+        let step = Step { group, item: group.number_of(position), instance };
+        Some((step, &self.aggregates[instance.aggregate as usize], id - instance.first))
     }
 
     /// The hit that a candidate is. `ray` is the world's.
