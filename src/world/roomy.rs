@@ -4,9 +4,9 @@
 /// A large page, bytes.
 const PAGE: usize = 2 << 20;
 
-/// What an allocator may put before and after a large block of its own.
+/// A small one, at which what is asked for must begin; an allocator puts less than that around a large block.
 #[cfg(target_os = "linux")]
-const AROUND: usize = 1 << 12;
+const SMALL_PAGE: usize = 1 << 12;
 
 /// An empty vector with room for so many.
 pub(super) fn with_room<T>(count: usize) -> Vec<T> {
@@ -25,11 +25,11 @@ fn on_large_pages<T>(count: usize) -> Vec<T> {
 /// Up to a multiple of large pages, at which the system lets a block begin only then.
 #[cfg(target_os = "linux")]
 fn on_large_pages<T>(count: usize) -> Vec<T> {
-    let bytes = (count * size_of::<T>() + AROUND).next_multiple_of(PAGE) - AROUND;
+    let bytes = (count * size_of::<T>() + SMALL_PAGE).next_multiple_of(PAGE) - SMALL_PAGE;
     let room = Vec::with_capacity(bytes / size_of::<T>());
     let start = room.as_ptr() as usize;
-    let first = start.next_multiple_of(AROUND);
-    let length = (start + bytes).next_multiple_of(AROUND) - first;
+    let first = start.next_multiple_of(SMALL_PAGE);
+    let length = (start + bytes).next_multiple_of(SMALL_PAGE) - first;
     // SAFETY: nothing has been written there, and what is asked for is how it is to be kept. Where that is refused, pages are small.
     #[allow(unsafe_code, reason = "the system has no safe way to be asked")]
     unsafe {
@@ -39,9 +39,8 @@ fn on_large_pages<T>(count: usize) -> Vec<T> {
 }
 
 /// The same in memory of its size, which is as [`with_room`] gives it.
-pub(super) fn settled<T>(all: Vec<T>) -> Vec<T> {
+pub(super) fn settled<T>(mut all: Vec<T>) -> Vec<T> {
     if size_of_val(&*all) < PAGE {
-        let mut all = all;
         all.shrink_to_fit();
         return all;
     }
