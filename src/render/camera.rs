@@ -89,10 +89,20 @@ impl View {
     #[inline]
     pub fn ray(&self, pixel: DVec2, lens: DVec2) -> Option<Ray> {
         let p = DVec2::new(2.0 * pixel.x / self.size.x - 1.0, 1.0 - 2.0 * pixel.y / self.size.y);
-        let (origin, toward) = match self.film {
-            Projected::Perspective(tangent) => {
-                (self.eye, self.in_frame(p.x * tangent.x, p.y * tangent.y, 1.0))
+        // On the spot for a pinhole: it has as many rays as others, and little else to do for them.
+        match self.film {
+            Projected::Perspective(tangent) if !self.has_lens() => {
+                Some(ray(self.eye, self.in_perspective(p, tangent)))
             }
+            _ => self.ray_of_any(p, lens),
+        }
+    }
+
+    /// The ray through a point of the picture in −1 … 1, whatever the projection and the lens.
+    #[inline(never)]
+    fn ray_of_any(&self, p: DVec2, lens: DVec2) -> Option<Ray> {
+        let (origin, toward) = match self.film {
+            Projected::Perspective(tangent) => (self.eye, self.in_perspective(p, tangent)),
             Projected::Orthographic(half) => {
                 (self.eye + self.in_frame(p.x * half.x, p.y * half.y, 0.0), self.forward)
             }
@@ -101,8 +111,7 @@ impl View {
         };
         let (origin, toward) =
             if self.has_lens() { self.through_lens(origin, toward, lens) } else { (origin, toward) };
-        let direction = toward.normalize();
-        Some(Ray { origin, direction, t_max: f64::INFINITY, kind: RayKind::Camera })
+        Some(ray(origin, toward))
     }
 
     /// How large a pixel is where: of a perspective at the corners of the picture, where a distance from the eye shows largest.
@@ -130,6 +139,11 @@ impl View {
         self.right * x + self.up * y + self.forward * z
     }
 
+    #[inline]
+    fn in_perspective(&self, p: DVec2, tangent: DVec2) -> DVec3 {
+        self.in_frame(p.x * tangent.x, p.y * tangent.y, 1.0)
+    }
+
     fn fisheye(&self, p: DVec2, scale: f64) -> Option<DVec3> {
         let p = DVec2::new(p.x * self.size.x / self.size.y, p.y);
         let r = p.length();
@@ -154,6 +168,11 @@ impl View {
         let offset = self.right * (r * c) + self.up * (r * s);
         (origin + offset, toward * self.focus - offset)
     }
+}
+
+#[inline]
+fn ray(origin: DVec3, toward: DVec3) -> Ray {
+    Ray { origin, direction: toward.normalize(), t_max: f64::INFINITY, kind: RayKind::Camera }
 }
 
 fn check(camera: &Camera, sight: DVec3) -> Result<(), CameraFault> {

@@ -93,7 +93,7 @@ fn white(settings: &ResolvedSettings) -> f64 {
 
 /// How many rays of each sample find what a pixel is seen to emit: none where no outline of a lamp is seen in it, or where its only sample
 /// is to go through its centre; else as many as leave no more noise than the edge of white paper has; a power of two. The rays that ask are counted.
-#[inline]
+#[inline(always)]
 pub fn rays(picture: Picture<'_>, pixel: [u32; 2], counts: &mut RayCounts) -> u32 {
     if picture.settings.samples == 1 { 0 } else { rays_of_samples(picture, pixel, counts) }
 }
@@ -133,16 +133,17 @@ impl Emission {
     const NOTHING: Emission = Emission { all: Rgb::ZERO, left: Rgb::ZERO };
 }
 
-/// What is seen to emit in a pixel, at the next sample.
+/// What is seen to emit in a pixel, at the next sample, where rays of their own find it.
 #[inline]
-pub fn emission(picture: Picture<'_>, pixel: [u32; 2], sampler: &mut Sampler) -> Emission {
+pub fn emission(picture: Picture<'_>, pixel: [u32; 2], sampler: &mut Sampler) -> Option<Emission> {
     match sampler.emission_rays {
-        0 => Emission::NOTHING,
-        n => emission_by(n, picture, pixel, sampler),
+        0 => None,
+        n => Some(emission_by(n, picture, pixel, sampler)),
     }
 }
 
 /// The same by n rays, at least one.
+#[inline(never)]
 fn emission_by(n: u32, picture: Picture<'_>, pixel: [u32; 2], sampler: &mut Sampler) -> Emission {
     let mut found = Emission::NOTHING;
     let rays = Rays::of(picture, pixel, n, sampler);

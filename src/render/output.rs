@@ -255,8 +255,9 @@ impl SrgbTable {
     /// Without a power for each channel of each pixel: the number that the lower end of the cell rounds to, or the next.
     #[inline]
     fn encode(&self, linear: f64) -> u8 {
-        let cell = (linear.clamp(0.0, 1.0) * CELLS as f64) as usize;
-        let encoded = self.first[cell.min(CELLS)];
+        // Of 16 bits, which the machine makes sooner of a number than 64; NaN is 0.
+        let cell = (linear.clamp(0.0, 1.0) * CELLS as f64) as u16;
+        let encoded = self.first[usize::from(cell).min(CELLS)];
         encoded + u8::from(self.steps[usize::from(encoded)] <= linear)
     }
 }

@@ -7,7 +7,7 @@ use super::features::FeatureSum;
 use super::film::{Fault, Film, PixelSum, Report, dimmed, reading_order};
 use super::filter;
 use super::outline::{self, Emission};
-use super::sampler::{RayCounts, Sampler};
+use super::sampler::{RayCounts, Sampler, Turn};
 use super::settings::ResolvedSettings;
 use super::tiles::Picture;
 use crate::diag::Span;
@@ -22,10 +22,9 @@ type Sight<'s> = (&'s Ray, &'s Found);
 /// The samples of a pixel so far.
 #[derive(Clone, Debug)]
 pub struct Pixel {
-    place: [u32; 2],
+    /// Its place, and the next sample.
+    turn: Turn,
     sum: PixelSum,
-    /// How many samples were taken.
-    pub taken: u32,
     /// True where its estimated error is as small as asked for.
     pub enough: bool,
     /// By which its error is estimated, where one is asked for.
@@ -43,18 +42,26 @@ impl Pixel {
     pub fn new(place: [u32; 2], settings: &ResolvedSettings) -> Pixel {
         let features = (!settings.kept().is_empty()).then(Box::default);
         let blocks = settings.error.map(|_| Box::default());
-        let sum = PixelSum::default();
-        Pixel { place, sum, taken: 0, enough: false, blocks, emission_rays: None, undefined: None, features }
+        let (turn, sum) = (Turn::new(place, 0), PixelSum::default());
+        Pixel { turn, sum, enough: false, blocks, emission_rays: None, undefined: None, features }
     }
 
     /// Its column and row in the whole picture.
+    #[inline]
     pub fn place(&self) -> [u32; 2] {
-        self.place
+        self.turn.place()
+    }
+
+    /// How many samples were taken.
+    #[inline]
+    pub fn taken(&self) -> u32 {
+        self.turn.sample()
     }
 
     /// True where it is to have the samples up to number `to`, and has neither them nor enough.
+    #[inline]
     pub fn is_open(&self, to: u32) -> bool {
-        self.taken < to && !self.enough
+        self.taken() < to && !self.enough
     }
 
     /// Finds whether the error is small enough, with one sample more.
@@ -67,14 +74,17 @@ impl Pixel {
     /// Finds how many rays of each sample are to find what is seen to emit, once; those that ask are counted.
     #[inline]
     pub fn ask_for_outlines(&mut self, picture: Picture<'_>, counts: &mut RayCounts) {
-        let place = self.place;
+        let place = self.place();
         self.emission_rays.get_or_insert_with(|| outline::rays(picture, place, counts));
     }
 
     /// The ray of the next sample, by its first numbers; none where the projection shows nothing.
     #[inline]
-    pub fn ray(&self, picture: Picture<'_>, sampler: &mut Sampler) -> Option<Ray> {
-        camera_ray(picture, self.place, sampler)
+    pub fn ray(&mut self, picture: Picture<'_>, sampler: &mut Sampler) -> Option<Ray> {
+        sampler.turn_to(self.turn);
+        let ray = camera_ray(picture, self.place(), sampler);
+        self.turn = sampler.turn();
+        ray
     }
 
     /// Takes the next sample, by its ray and what that meets if it has one, and by the rest of its numbers. Finds whether the error is small enough then.
@@ -86,21 +96,16 @@ impl Pixel {
         sampler: &mut Sampler,
         report: &mut Report,
     ) {
+        sampler.turn_to(self.turn);
         sampler.forget();
         sampler.emission_rays = self.emission_rays.unwrap_or(0);
-        let (emission, found) = traced(picture, self.place, sight, sampler);
+        let sample = Sample::traced(picture, self.place(), sight, sampler);
         let radiance = match picture.settings.clamp {
-            Some(most) => {
-                let left = emission.left + dimmed(most, found);
-                report.taken.clamped.note(emission.all + found, left);
-                left
-            }
-            None => emission.all + found,
+            None => sample.radiance(),
+            Some(most) => sample.clamped(most, report),
         };
-        let before = self.sum.non_finite;
-        self.sum.add(radiance);
-        if self.sum.non_finite > before {
-            note_non_finite(picture, self.place, sampler, report);
+        if !self.sum.add(radiance) {
+            note_non_finite(picture, self.place(), sampler, report);
         }
         if let Some(features) = &mut self.features {
             features.add(picture.settings.kept(), picture.world, sampler.first, radiance);
@@ -108,8 +113,7 @@ impl Pixel {
         if sampler.undefined.is_some() {
             self.undefined = self.undefined.or(sampler.undefined);
         }
-        report.rays += sampler.rays;
-        self.taken += 1;
+        self.turn = sampler.turn().next();
         self.weigh(radiance, picture.settings);
     }
 
@@ -117,22 +121,47 @@ impl Pixel {
     pub fn radiance(&self, report: &mut Report) -> Rgb {
         let Some(fault) = self.undefined else { return self.sum.mean() };
         let (span, kind) = (Some(fault.span), Some(fault.kind));
-        report.add_undefined(Fault { pixel: self.place, count: 1, span, kind });
+        report.add_undefined(Fault { pixel: self.place(), count: 1, span, kind });
         Film::UNDEFINED
     }
 }
 
-/// What rays for outlines find of a sample, and what its own ray does if there is one.
-#[inline]
-fn traced(
-    picture: Picture<'_>,
-    place: [u32; 2],
-    sight: Option<Sight<'_>>,
-    sampler: &mut Sampler,
-) -> (Emission, Rgb) {
-    let emission = outline::emission(picture, place, sampler);
-    let Picture { world, tracer, .. } = picture;
-    (emission, sight.map_or(Rgb::ZERO, |(ray, found)| tracer.radiance(world, ray, found, sampler)))
+/// What rays for outlines find of a sample, where there are any, and what its own ray does.
+struct Sample {
+    emission: Option<Emission>,
+    found: Rgb,
+}
+
+impl Sample {
+    /// Finds both. The ray may be missing.
+    #[inline(always)]
+    fn traced(
+        picture: Picture<'_>,
+        place: [u32; 2],
+        sight: Option<Sight<'_>>,
+        sampler: &mut Sampler,
+    ) -> Sample {
+        let emission = outline::emission(picture, place, sampler);
+        let Picture { world, tracer, .. } = picture;
+        let found = sight.map_or(Rgb::ZERO, |(ray, found)| tracer.radiance(world, ray, found, sampler));
+        Sample { emission, found }
+    }
+
+    #[inline(always)]
+    fn radiance(&self) -> Rgb {
+        match &self.emission {
+            None => self.found,
+            Some(emission) => emission.all + self.found,
+        }
+    }
+
+    /// What a clamp leaves of it, which is noted.
+    fn clamped(&self, most: f64, report: &mut Report) -> Rgb {
+        let dimmed = dimmed(most, self.found);
+        let left = self.emission.as_ref().map_or(dimmed, |emission| emission.left + dimmed);
+        report.taken.clamped.note(self.radiance(), left);
+        left
+    }
 }
 
 /// The ray of a sample: through the pixel's centre for the only one, else through a point that its filter chooses.
@@ -176,7 +205,7 @@ fn culprit(picture: Picture<'_>, pixel: [u32; 2], sampler: &Sampler) -> Option<S
     let suspect = |emission_rays| {
         let mut again = sampler.accusing(emission_rays);
         let sight = camera_ray(picture, pixel, &mut again).map(|ray| (ray, picture.world.find(&ray)));
-        traced(picture, pixel, sight.as_ref().map(|(ray, found)| (ray, found)), &mut again);
+        Sample::traced(picture, pixel, sight.as_ref().map(|(ray, found)| (ray, found)), &mut again);
         again.suspect.found()
     };
     // What is seen to emit may have been found by other rays.

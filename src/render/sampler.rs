@@ -22,7 +22,7 @@ pub struct Sampler {
     kind: SamplerKind,
     /// Samples of the pixel, which a grid must know.
     samples: u32,
-    /// Rays cast for this sample.
+    /// Rays cast, for all samples whose numbers it gave.
     pub rays: RayCounts,
     /// The function of the scene that was undefined on the way, where one was. Such a pixel is shown magenta.
     pub undefined: Option<TextureFault>,
@@ -37,7 +37,7 @@ pub struct Sampler {
 /// Whose numbers come next: a sample of a pixel, and how many of its dimensions were taken.
 #[derive(Clone, Copy, Debug)]
 pub struct Turn {
-    /// Row and column.
+    /// Row and column, each 32 bits.
     place: u64,
     /// Both mixed with the seed, once a number is asked for: many a sample needs none.
     pixel: Option<u64>,
@@ -50,6 +50,18 @@ impl Turn {
     #[inline]
     pub fn new([x, y]: [u32; 2], sample: u32) -> Turn {
         Turn { place: u64::from(y) << 32 | u64::from(x), pixel: None, sample, dimension: 0 }
+    }
+
+    /// The pixel's column and row.
+    #[inline]
+    pub fn place(self) -> [u32; 2] {
+        [self.place as u32, (self.place >> 32) as u32]
+    }
+
+    /// The sample's number.
+    #[inline]
+    pub fn sample(self) -> u32 {
+        self.sample
     }
 
     /// The next sample of the pixel.
@@ -154,10 +166,9 @@ impl Sampler {
         self.turn = turn;
     }
 
-    /// Forgets what was noted of a sample.
+    /// Forgets what was noted of a sample alone.
     #[inline]
     pub fn forget(&mut self) {
-        self.rays = RayCounts::default();
         self.undefined = None;
         if let First::Seen(_) = self.first {
             self.first = First::Awaited;

@@ -150,7 +150,8 @@ pub(super) struct Tile {
 impl Tile {
     /// Without a sample.
     pub fn new(crop: Crop, settings: &ResolvedSettings) -> Tile {
-        let pixels = places(crop).map(|place| Pixel::new(place, settings)).collect();
+        let mut pixels = Vec::with_capacity(crop.area());
+        blocks_of(crop).for_each(|block| fill(&mut pixels, block, settings));
         Tile { crop, pixels, report: Report::default() }
     }
 
@@ -173,13 +174,18 @@ impl Tile {
     }
 }
 
-/// The pixels of a crop, by column and row: square block by block, each in reading order.
-fn places(crop: Crop) -> impl Iterator<Item = [u32; 2]> {
-    let block = |part: &Crop| {
-        let Crop { x, y, width, height } = *part;
-        (y..y + height).flat_map(move |y| (x..x + width).map(move |x| [x, y]))
-    };
-    tiles_of(crop, BLOCK).into_iter().flat_map(move |part| block(&part))
+/// The square blocks of a crop, in reading order.
+fn blocks_of(crop: Crop) -> impl Iterator<Item = Crop> {
+    tiles_of(crop, BLOCK).into_iter()
+}
+
+/// Adds the pixels of a block in reading order, without a sample.
+fn fill(pixels: &mut Vec<Pixel>, block: Crop, settings: &ResolvedSettings) {
+    for y in block.y..block.y + block.height {
+        for x in block.x..block.x + block.width {
+            pixels.push(Pixel::new([x, y], settings));
+        }
+    }
 }
 
 /// A crop's film without a pixel.
@@ -201,7 +207,7 @@ fn show(film: &mut Film, pixel: &Pixel, to: u32) {
     let place = (y - crop.y) as usize * crop.width as usize + (x - crop.x) as usize;
     film.pixels[place] = pixel.radiance(&mut film.report);
     film.finished[place] = true;
-    film.report.taken.add(pixel.taken, pixel.enough);
+    film.report.taken.add(pixel.taken(), pixel.enough);
     if let Some(sum) = &pixel.features {
         let (features, source) = sum.features();
         film.features[place] = Features { source: source.map_or(0, |s| film.number_of(s)), ..features };
@@ -212,18 +218,17 @@ fn show(film: &mut Film, pixel: &Pixel, to: u32) {
 fn render_tile(picture: Picture<'_>, crop: Crop, cancel: &AtomicBool) -> Film {
     let (settings, to) = (picture.settings, picture.settings.samples);
     let mut film = blank(crop, settings, Report::default());
-    let mut places = places(crop);
     let mut pixels = Vec::with_capacity(RAYS);
-    loop {
+    for block in blocks_of(crop) {
         pixels.clear();
-        pixels.extend(places.by_ref().take(RAYS).map(|place| Pixel::new(place, settings)));
-        let goes_on =
-            !pixels.is_empty() && block::advance(&mut pixels, picture, to, &mut film.report, cancel);
+        fill(&mut pixels, block, settings);
+        let goes_on = block::advance(&mut pixels, picture, to, &mut film.report, cancel);
         pixels.iter().for_each(|pixel| show(&mut film, pixel, to));
         if !goes_on {
-            return film;
+            break;
         }
     }
+    film
 }
 
 /// Copies a part into a film.
@@ -241,10 +246,15 @@ pub(super) fn place(film: &mut Film, part: Film) {
         let from = row * width;
         film.pixels[to..to + width].copy_from_slice(&part.pixels[from..from + width]);
         film.finished[to..to + width].copy_from_slice(&part.finished[from..from + width]);
-        for (to, from) in (to..to + width).zip(from..from + width).filter(|_| has_features) {
-            let Features { source, .. } = part.features[from];
-            let source = if source == 0 { 0 } else { numbers[source as usize - 1] };
-            film.features[to] = Features { source, ..part.features[from] };
+        if has_features {
+            let renumbered = part.features[from..from + width].iter().map(|features| Features {
+                source: features.source.checked_sub(1).map_or(0, |source| numbers[source as usize]),
+                ..*features
+            });
+            film.features[to..to + width]
+                .iter_mut()
+                .zip(renumbered)
+                .for_each(|(to, features)| *to = features);
         }
     }
     film.report.merge(part.report);

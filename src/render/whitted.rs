@@ -66,12 +66,21 @@ fn lets_light_through(material: &Material) -> bool {
 #[derive(Clone, Copy)]
 struct Task {
     ray: Ray,
-    /// What its radiance is multiplied by in the sample.
+    stage: Stage,
+}
+
+/// How far a sample has come with a ray.
+#[derive(Clone, Copy)]
+struct Stage {
+    /// What the ray's radiance is multiplied by in the sample.
     weight: Rgb,
     /// Segments from the camera, this one counted.
     segment: u32,
     inside: Inside,
 }
+
+/// With the ray of the camera.
+static FIRST: Stage = Stage { weight: Rgb::ONE, segment: 1, inside: Inside::NOTHING };
 
 thread_local! {
     /// The list of what is still to do, kept between samples so that tracing does not allocate.
@@ -85,7 +94,7 @@ struct Tasks(Vec<Task>);
 impl Tasks {
     /// Adds a task, if it can still matter.
     fn push(&mut self, task: Task) -> bool {
-        let matters = task.weight.max_element() > LEAST_WEIGHT;
+        let matters = task.stage.weight.max_element() > LEAST_WEIGHT;
         if matters {
             if self.0.capacity() == 0 {
                 self.0 = KEPT.take();
@@ -112,9 +121,9 @@ impl Tracer for Whitted {
     fn radiance(&self, world: &World, ray: &Ray, found: &Found, sampler: &mut Sampler) -> Rgb {
         sampler.rays.camera += 1;
         let mut tasks = Tasks::default();
-        let mut task = Task { ray: *ray, weight: Rgb::ONE, segment: 1, inside: Inside::NOTHING };
         let mut sum = Rgb::ZERO;
-        let mut sent = self.come_to(world, world.hit(ray, found).as_ref(), &task, &mut tasks, sampler);
+        let mut sent =
+            self.come_to(world, world.hit(ray, found).as_ref(), (ray, &FIRST), &mut tasks, sampler);
         loop {
             match sent {
                 Ok(radiance) => sum += radiance,
@@ -123,12 +132,9 @@ impl Tracer for Whitted {
                     break;
                 }
             }
-            match tasks.0.pop() {
-                Some(next) => task = next,
-                None => break,
-            }
+            let Some(Task { ray, stage }) = &tasks.0.pop() else { break };
             // A hit and what it is made of are looked at where they stand: a copy of so much just written waits for the writes.
-            sent = self.come_to(world, world.closest(&task.ray).as_ref(), &task, &mut tasks, sampler);
+            sent = self.come_to(world, world.closest(ray).as_ref(), (ray, stage), &mut tasks, sampler);
         }
         tasks.keep();
         sum
@@ -141,34 +147,30 @@ impl Whitted {
         &self,
         world: &World,
         met: Option<&Hit<'_>>,
-        task: &Task,
+        (ray, stage): (&Ray, &Stage),
         tasks: &mut Tasks,
         sampler: &mut Sampler,
     ) -> Sampled<Rgb> {
         let Some(hit) = met else {
-            return Ok(task.weight * task.inside.kept(f64::INFINITY) * self.beyond(&task.ray));
+            return Ok(stage.weight * stage.inside.kept(f64::INFINITY) * self.beyond(ray));
         };
-        sampler.first.meet(&task.ray, hit);
+        sampler.first.meet(ray, hit);
         let mut slot = Slot::uninit();
-        let bsdf = Bsdf::put(&mut slot, world, hit, &task.ray)?;
+        let bsdf = Bsdf::put(&mut slot, world, hit, ray)?;
         sampler.first.look(bsdf);
-        let mut weight = task.weight * task.inside.left(bsdf, hit.t);
+        let mut weight = stage.weight * stage.inside.left(bsdf, hit.t);
         if bsdf.opacity < 1.0 {
-            let past = Task {
-                ray: hit.spawn(task.ray.direction, task.ray.kind),
-                weight: weight * (1.0 - bsdf.opacity),
-                ..*task
-            };
-            tasks.push(past);
+            let past = Stage { weight: weight * (1.0 - bsdf.opacity), ..*stage };
+            tasks.push(Task { ray: hit.spawn(ray.direction, ray.kind), stage: past });
             weight *= bsdf.opacity;
         }
         let mut radiance = bsdf.ambient + bsdf.emitted(world, hit);
-        let last = self.second_rays && task.segment >= self.depth;
+        let last = self.second_rays && stage.segment >= self.depth;
         if !last {
-            radiance += self.local(world, hit, bsdf, task.segment == 1, sampler)?;
+            radiance += self.local(world, hit, bsdf, stage.segment == 1, sampler)?;
         }
         if self.second_rays && !last && bsdf.goes_on() {
-            self.branch(hit, bsdf, &Task { weight, ..*task }, tasks, sampler);
+            self.branch(hit, bsdf, &Stage { weight, ..*stage }, tasks, sampler);
         }
         let sent = weight * radiance;
         sampler.suspect.look(hit.primitive, [sent, weight]);
@@ -176,12 +178,10 @@ impl Whitted {
     }
 
     /// The mirrored and the bent ray of a hit.
-    fn branch(&self, hit: &Hit<'_>, bsdf: &Bsdf, from: &Task, tasks: &mut Tasks, sampler: &mut Sampler) {
+    fn branch(&self, hit: &Hit<'_>, bsdf: &Bsdf, from: &Stage, tasks: &mut Tasks, sampler: &mut Sampler) {
         let next = |s: Scattered, inside| Task {
             ray: hit.spawn(s.direction, RayKind::Indirect),
-            weight: from.weight * s.weight,
-            segment: from.segment + 1,
-            inside,
+            stage: Stage { weight: from.weight * s.weight, segment: from.segment + 1, inside },
         };
         let u = if bsdf.is_glossy() { sampler.next_2d() } else { glam::DVec2::ZERO };
         if let Some(bent) = bsdf.transmitted(u) {
