@@ -193,18 +193,15 @@ impl Group {
         }
     }
 
-    /// The placement that holds, or is, the one numbered `id` from this group, and its position; none for 0.
+    /// The position of the placement that holds, or is, the one numbered `id` from this group; none for 0.
     #[inline]
-    pub fn placement(&self, id: u64) -> Option<(u32, &Instance)> {
-        if id == 0 {
-            return None;
-        }
-        let instance = |item: u32| match &self.items[item as usize] {
-            Item::Instance(instance) => Some((item, &**instance)),
-            Item::Shape(..) => None,
+    pub fn placement(&self, id: u64) -> Option<u32> {
+        let first = |item: u32| match &self.items[item as usize] {
+            Item::Instance(instance) => instance.first,
+            Item::Shape(..) => u64::MAX,
         };
-        let after = self.instances.partition_point(|&i| instance(i).is_some_and(|(_, p)| p.first <= id));
-        instance(*self.instances.get(after.checked_sub(1)?)?)
+        let after = self.instances.partition_point(|&i| first(i) <= id);
+        self.instances.get(after.checked_sub(1)?).copied()
     }
 
     /// The box around an item, in this group's space.

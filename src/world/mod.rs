@@ -248,7 +248,9 @@ impl World {
     }
 }
 
-/// The largest distance below one, finite.
+/// The largest distance below one, finite; below 0 where there is none.
+#[inline]
 fn last_before(t_max: f64) -> f64 {
-    t_max.next_down()
+    // The numbers from 0 up have bits that go up with them.
+    if t_max > 0.0 { f64::from_bits(t_max.to_bits() - 1) } else { -1.0 }
 }

@@ -75,6 +75,30 @@ impl World {
         }
     }
 
+    /// The way to what was found: most of what is placed is placed once, and a mesh's placement was noted.
+    #[inline(always)]
+    fn path_to(&self, candidate: &Candidate) -> Path<'_> {
+        let id = candidate.id.instance;
+        let noted = match &self.aggregates[0] {
+            Aggregate::Group(group) if id != 0 => self.step_at(group, candidate.position),
+            _ => None,
+        };
+        match noted {
+            Some((step, aggregate)) if step.instance.first == id => {
+                Path { steps: Steps::One([step]), aggregate }
+            }
+            _ => self.path(id),
+        }
+    }
+
+    /// The step into the placement at a position of a group, if there is one.
+    #[inline(always)]
+    fn step_at<'w>(&'w self, group: &'w Group, position: u32) -> Option<(Step<'w>, &'w Aggregate)> {
+        let Some(Item::Instance(instance)) = group.items.get(position as usize) else { return None };
+        let step = Step { group, item: group.number_of(position), instance };
+        Some((step, &self.aggregates[instance.aggregate as usize]))
+    }
+
     /// The way into a placement.
     fn path_into(&self, id: u64) -> Path<'_> {
         let whole = &self.aggregates[0];
@@ -101,15 +125,14 @@ impl World {
     #[inline]
     fn step<'w>(&'w self, aggregate: &'w Aggregate, id: u64) -> Option<(Step<'w>, &'w Aggregate, u64)> {
         let Aggregate::Group(group) = aggregate else { return None };
-        let (position, instance) = group.placement(id)?;
-        let step = Step { group, item: group.number_of(position), instance };
-        Some((step, &self.aggregates[instance.aggregate as usize], id - instance.first))
+        let (step, aggregate) = self.step_at(group, group.placement(id)?)?;
+        Some((step, aggregate, id - step.instance.first))
     }
 
     /// The hit that a candidate is. `ray` is the world's.
     #[inline]
     pub(super) fn finish(&self, ray: &LocalRay, t: f64, candidate: &Candidate) -> Option<Hit<'_>> {
-        let path = self.path(candidate.id.instance);
+        let path = self.path_to(candidate);
         let (shape, own_transform) = match path.aggregate {
             Aggregate::Mesh(_) => (None, None),
             Aggregate::Group(group) => match &group.items[candidate.position as usize] {

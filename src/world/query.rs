@@ -14,7 +14,7 @@ pub(super) struct Candidate {
     /// Distance in the world's units of the ray.
     pub t: f64,
     pub id: PrimitiveId,
-    /// Where the shape is among its group's items.
+    /// Where the shape, or the placement of the mesh, is among its group's items.
     pub position: u32,
     /// In the units of the shape's own space.
     pub meet: Meet,
@@ -64,32 +64,39 @@ impl<'w> Query<'w> {
         any: bool,
     ) -> Option<Candidate> {
         let mut query = Query { world, kind, any, limit, found: Found(None) };
-        query.visit(&world.aggregates[0], &Local::new(ray, per_world, 0));
+        query.visit(&world.aggregates[0], 0, &Local::new(ray, per_world, 0));
         query.found.0
     }
 
+    /// An aggregate, whose placement is `at` a position.
     #[inline(always)]
-    fn visit(&mut self, aggregate: &Aggregate, local: &Local<'_>) {
+    fn visit(&mut self, aggregate: &Aggregate, at: usize, local: &Local<'_>) {
         match aggregate {
             Aggregate::Group(group) => self.visit_group(group, local),
-            Aggregate::Mesh(mesh) => self.visit_mesh(mesh, local),
+            Aggregate::Mesh(mesh) => self.visit_mesh(mesh, at, local),
         }
     }
 
     #[inline]
-    fn visit_mesh(&mut self, mesh: &MeshAggregate, local: &Local<'_>) {
+    fn visit_mesh(&mut self, mesh: &MeshAggregate, at: usize, local: &Local<'_>) {
         let met = mesh.shape.meet_nearest(local.ray, self.limit * local.per_world, self.any);
         if let Some((position, meet)) = met {
-            self.take_triangle(mesh, position, meet, local);
+            self.take_triangle((mesh, at), position, meet, local);
         }
     }
 
     /// A meeting with a triangle at a position of its mesh's tree.
     #[inline(always)]
-    fn take_triangle(&mut self, mesh: &MeshAggregate, position: usize, meet: Meet, local: &Local<'_>) {
+    fn take_triangle(
+        &mut self,
+        (mesh, at): (&MeshAggregate, usize),
+        position: usize,
+        meet: Meet,
+        local: &Local<'_>,
+    ) {
         let part = mesh.shape.triangle_at(position);
         let id = PrimitiveId { instance: local.instance, shape: 0, part };
-        self.offer(id, 0, meet, local);
+        self.offer(id, at as u32, meet, local);
     }
 
     /// Groups hold groups, so there is one such function and no copies of it.
@@ -160,10 +167,10 @@ impl<'w> Query<'w> {
                 let aggregate = &self.world.aggregates[instance.aggregate as usize];
                 let number = local.instance.saturating_add(instance.first);
                 let Some(transform) = &instance.transform else {
-                    return self.visit(aggregate, &Local { instance: number, ..*local });
+                    return self.visit(aggregate, position, &Local { instance: number, ..*local });
                 };
                 let Some((ray, factor)) = local.ray.into_local(transform) else { return };
-                self.visit(aggregate, &Local::new(&ray, local.per_world * factor, number));
+                self.visit(aggregate, position, &Local::new(&ray, local.per_world * factor, number));
             }
         }
     }

@@ -41,7 +41,7 @@ impl Whitted {
         if light.is_delta() {
             // Looked at where it stands, here and below: it is not small.
             return match &light.sample(hit.point, bsdf.normal, DVec2::ZERO) {
-                Some(s) => self.arriving(world, hit, light, s, bsdf.base(s.wi) + bsdf.gloss(s.wi), sampler),
+                Some(s) => self.arriving(world, hit, light, s, bsdf.sent_on(s.wi), sampler),
                 None => Ok(Rgb::ZERO),
             };
         }

@@ -42,7 +42,7 @@ fn drawn(bsdf: &Bsdf, from: DVec3) -> Figure {
         .map(|half| {
             let (sin, cos) = sin_cos_degrees(0.5 * f64::from(half));
             let to = DVec3::new(sin, cos, 0.0);
-            DVec2::new(sin, cos) * luminance(bsdf.base(to) + bsdf.gloss(to))
+            DVec2::new(sin, cos) * luminance(bsdf.sent_on(to))
         })
         .collect();
     let middle = DVec2::splat(0.5);

@@ -76,6 +76,25 @@ enum Mirror {
     Boundary(Rgb, Fresnel),
 }
 
+/// From where a surface is seen: what its material has no part in.
+struct Sight {
+    wo: DVec3,
+    outside: bool,
+    geometric: DVec3,
+    normal: DVec3,
+}
+
+impl Sight {
+    #[inline(always)]
+    fn new(hit: &Hit<'_>, ray: &Ray) -> Sight {
+        let wo = -ray.direction;
+        let outside = wo.dot(hit.geometric_normal) >= 0.0;
+        let side = if outside { 1.0 } else { -1.0 };
+        let geometric = hit.geometric_normal * side;
+        Sight { wo, outside, geometric, normal: normal::facing(hit.normal * side, geometric, wo) }
+    }
+}
+
 /// Facets that differ by less than this from one another differ by less than a unit vector's roundings, squared: a smooth mirror.
 const SMOOTH: f64 = 1.0 / (1u64 << 26) as f64;
 
@@ -97,33 +116,27 @@ impl Bsdf {
     /// The same in a slot, to be looked at there: a copy of so much just written waits for the writes.
     #[inline(always)]
     pub fn put<'p>(slot: &'p mut Slot, world: &World, hit: &Hit<'_>, ray: &Ray) -> Sampled<&'p Bsdf> {
-        let bsdf = slot.write(*Bsdf::before(hit));
-        bsdf.fill(world, hit, ray)?;
-        Ok(bsdf)
-    }
-
-    /// What is known of it whatever the ray and the place are.
-    #[inline]
-    fn before<'w>(hit: &Hit<'w>) -> &'w Bsdf {
-        match &hit.coat.same {
-            Same::All(same) => same,
-            Same::Matt(_) | Same::No => &Bsdf::BARE,
-        }
-    }
-
-    /// What the ray and the place say.
-    #[inline]
-    fn fill(&mut self, world: &World, hit: &Hit<'_>, ray: &Ray) -> Sampled<()> {
         if let Some(fault) = hit.fault {
             return Err(fault);
         }
-        self.see(hit, ray);
-        match &hit.coat.same {
-            Same::Matt(albedo) => self.diffuse = *albedo,
-            Same::All(_) => {}
-            Same::No => self.read(world, hit, ray)?,
-        }
-        Ok(())
+        let sight = Sight::new(hit, ray);
+        Ok(match &hit.coat.same {
+            // Most surfaces: what they do not do is written, not copied.
+            Same::Matt(albedo) => slot.write(Bsdf { diffuse: *albedo, ..Bsdf::BARE.seen(&sight) }),
+            Same::All(same) => slot.write(same.seen(&sight)),
+            Same::No => {
+                let bsdf = slot.write(Bsdf::BARE.seen(&sight));
+                bsdf.read(world, hit, ray)?;
+                bsdf
+            }
+        })
+    }
+
+    /// The same as it is seen from elsewhere.
+    #[inline(always)]
+    fn seen(&self, sight: &Sight) -> Bsdf {
+        let Sight { wo, outside, geometric, normal } = *sight;
+        Bsdf { wo, outside, geometric, normal, ..*self }
     }
 
     /// What the patterns and maps of its material say there.
@@ -131,16 +144,6 @@ impl Bsdf {
         let at = TexturePoint::from(hit);
         self.add(&hit.coat.material, &at)?;
         self.bend_normal(world, hit, ray, &at)
-    }
-
-    /// From where it is seen.
-    #[inline]
-    fn see(&mut self, hit: &Hit<'_>, ray: &Ray) {
-        self.wo = -ray.direction;
-        self.outside = self.wo.dot(hit.geometric_normal) >= 0.0;
-        let side = if self.outside { 1.0 } else { -1.0 };
-        self.geometric = hit.geometric_normal * side;
-        self.normal = normal::facing(hit.normal * side, self.geometric, self.wo);
     }
 
     /// Reflects nothing.
@@ -255,14 +258,17 @@ impl Bsdf {
         }
     }
 
+    /// The base and the mirror as a lobe together, both times the cosine.
+    #[inline]
+    pub fn sent_on(&self, wi: DVec3) -> Rgb {
+        let base = self.base(wi);
+        if self.is_glossy() { base + self.gloss(wi) } else { base }
+    }
+
     /// The mirror as a lobe, times the cosine, with what bounces several times between its facets; 0 where it is smooth and so has no
     /// width.
-    #[inline]
     pub fn gloss(&self, wi: DVec3) -> Rgb {
-        if !self.is_glossy() {
-            return Rgb::ZERO;
-        }
-        let lit = self.lit(wi);
+        let lit = if self.is_glossy() { self.lit(wi) } else { 0.0 };
         if lit <= 0.0 {
             return Rgb::ZERO;
         }

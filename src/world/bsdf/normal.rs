@@ -8,11 +8,13 @@ use crate::world::texture::{self, Sampled, TexturePoint};
 use crate::world::{Ray, World};
 use glam::DVec3;
 
-/// A unit normal brought to the side of the geometric normal and of `wo`.
+/// A unit normal brought to the side of the geometric normal and of `wo`, on whose side that is.
+#[inline]
 pub(super) fn facing(n: DVec3, geometric: DVec3, wo: DVec3) -> DVec3 {
-    if n == geometric {
-        return n;
-    }
+    if n == geometric { n } else { brought(n, geometric, wo) }
+}
+
+fn brought(n: DVec3, geometric: DVec3, wo: DVec3) -> DVec3 {
     let n = onto_side(n, geometric);
     if wo.dot(n) < 0.0 { onto_side(n, wo) } else { n }
 }

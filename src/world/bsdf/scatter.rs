@@ -55,7 +55,7 @@ impl Bsdf {
 
     /// All that is sent to `wo` of the irradiance from `wi`, per steradian, smooth mirrors and boundaries left out.
     pub fn sent(&self, wi: DVec3) -> Rgb {
-        if wi.dot(self.geometric) > 0.0 { self.base(wi) + self.gloss(wi) } else { self.frosted(wi) }
+        if wi.dot(self.geometric) > 0.0 { self.sent_on(wi) } else { self.frosted(wi) }
     }
 
     /// The share of what [`Bsdf::sent`] sends that is not by the matt part, for each colour.

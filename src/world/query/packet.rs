@@ -33,7 +33,7 @@ impl<'w> Queries<'w> {
         let mut queries = Queries([Query { world, kind, any: false, limit: 0.0, found: Found(None) }; RAYS]);
         queries.0.iter_mut().zip(limits).for_each(|(query, limit)| query.limit = *limit);
         let place = Place { packet, members: packet.members, per_world: &[1.0; RAYS], instance: 0 };
-        queries.visit(&world.aggregates[0], &place);
+        queries.visit(&world.aggregates[0], 0, &place);
         queries
     }
 
@@ -42,10 +42,11 @@ impl<'w> Queries<'w> {
         &self.0[i].found
     }
 
-    fn visit(&mut self, aggregate: &'w Aggregate, place: &Place<'_>) {
+    /// An aggregate, whose placement is `at` a position.
+    fn visit(&mut self, aggregate: &'w Aggregate, at: usize, place: &Place<'_>) {
         match aggregate {
             Aggregate::Group(group) => self.visit_group(group, place),
-            Aggregate::Mesh(mesh) => self.visit_mesh(mesh, place),
+            Aggregate::Mesh(mesh) => self.visit_mesh(mesh, at, place),
         }
     }
 
@@ -58,10 +59,10 @@ impl<'w> Queries<'w> {
         limits
     }
 
-    fn visit_mesh(&mut self, mesh: &MeshAggregate, place: &Place<'_>) {
+    fn visit_mesh(&mut self, mesh: &MeshAggregate, at: usize, place: &Place<'_>) {
         let rays = (place.packet, place.members);
         mesh.shape.meet_nearest_each(rays, &self.limits(place), |i, position, meet| {
-            place.alone(i, |local| self.0[i].take_triangle(mesh, position, meet, local));
+            place.alone(i, |local| self.0[i].take_triangle((mesh, at), position, meet, local));
         });
     }
 
@@ -98,7 +99,7 @@ impl<'w> Queries<'w> {
         }
         let aggregate = &world.aggregates[instance.aggregate as usize];
         let place = Place { instance: place.instance.saturating_add(instance.first), ..*place };
-        let Some(transform) = &instance.transform else { return self.visit(aggregate, &place) };
+        let Some(transform) = &instance.transform else { return self.visit(aggregate, position, &place) };
         let mut per_world = *place.per_world;
         let inside = Packet::new(|i| {
             let (ray, factor) = place.members.has(i).then(|| place.packet.ray(i))?.into_local(transform)?;
@@ -107,7 +108,7 @@ impl<'w> Queries<'w> {
         });
         if let Some(packet) = &inside {
             let members = packet.members;
-            self.visit(aggregate, &Place { packet, members, per_world: &per_world, ..place });
+            self.visit(aggregate, position, &Place { packet, members, per_world: &per_world, ..place });
         }
     }
 }
