@@ -1,6 +1,7 @@
 //! Pixels side by side: sample by sample, of which the camera's rays find together what they meet.
 
 use super::film::Report;
+use super::outline;
 use super::pixel::Pixel;
 use super::sampler::Sampler;
 use super::tiles::Picture;
@@ -19,7 +20,9 @@ pub fn advance(
     let settings = picture.settings;
     let sampler = Sampler::new(settings.seed, 0, 0, 0).of_kind(settings.sampler, settings.samples);
     let mut sampler = sampler.asking(settings.kept().look());
-    pixels.iter_mut().for_each(|pixel| pixel.ask_for_outlines(picture, &mut report.rays));
+    if outline::may_be_asked(settings) {
+        pixels.iter_mut().for_each(|pixel| pixel.ask_for_outlines(picture, &mut report.rays));
+    }
     let mut goes_on = true;
     while goes_on && pixels.iter().any(|pixel| pixel.is_open(to)) {
         goes_on = !cancel.load(Ordering::Relaxed);

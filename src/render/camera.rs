@@ -86,21 +86,23 @@ impl View {
 
     /// The ray through a point of the picture and a point of the lens, given by two numbers in [0, 1)²; none where the
     /// projection shows nothing (outside a fisheye's 360°). A pinhole does not look at `lens`.
-    #[inline]
+    #[inline(always)]
     pub fn ray(&self, pixel: DVec2, lens: DVec2) -> Option<Ray> {
         let p = DVec2::new(2.0 * pixel.x / self.size.x - 1.0, 1.0 - 2.0 * pixel.y / self.size.y);
-        // On the spot for a pinhole: it has as many rays as others, and little else to do for them.
-        match self.film {
+        let (origin, toward) = match self.film {
+            // On the spot for a pinhole: it has as many rays as others, and little else to do for them.
             Projected::Perspective(tangent) if !self.has_lens() => {
-                Some(ray(self.eye, self.in_perspective(p, tangent)))
+                (self.eye, self.in_perspective(p, tangent))
             }
-            _ => self.ray_of_any(p, lens),
-        }
+            _ => self.line_of_any(p, lens)?,
+        };
+        let direction = toward.normalize();
+        Some(Ray { origin, direction, t_max: f64::INFINITY, kind: RayKind::Camera })
     }
 
-    /// The ray through a point of the picture in −1 … 1, whatever the projection and the lens.
+    /// Where the ray through a point of the picture in −1 … 1 starts and where it goes, whatever the projection and the lens.
     #[inline(never)]
-    fn ray_of_any(&self, p: DVec2, lens: DVec2) -> Option<Ray> {
+    fn line_of_any(&self, p: DVec2, lens: DVec2) -> Option<(DVec3, DVec3)> {
         let (origin, toward) = match self.film {
             Projected::Perspective(tangent) => (self.eye, self.in_perspective(p, tangent)),
             Projected::Orthographic(half) => {
@@ -109,9 +111,7 @@ impl View {
             Projected::Fisheye(scale) => (self.eye, self.fisheye(p, scale)?),
             Projected::Panorama => (self.eye, self.panorama(p)),
         };
-        let (origin, toward) =
-            if self.has_lens() { self.through_lens(origin, toward, lens) } else { (origin, toward) };
-        Some(ray(origin, toward))
+        Some(if self.has_lens() { self.through_lens(origin, toward, lens) } else { (origin, toward) })
     }
 
     /// How large a pixel is where: of a perspective at the corners of the picture, where a distance from the eye shows largest.
@@ -168,11 +168,6 @@ impl View {
         let offset = self.right * (r * c) + self.up * (r * s);
         (origin + offset, toward * self.focus - offset)
     }
-}
-
-#[inline]
-fn ray(origin: DVec3, toward: DVec3) -> Ray {
-    Ray { origin, direction: toward.normalize(), t_max: f64::INFINITY, kind: RayKind::Camera }
 }
 
 fn check(camera: &Camera, sight: DVec3) -> Result<(), CameraFault> {

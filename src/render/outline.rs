@@ -72,7 +72,7 @@ impl Outlines {
         let [width, height] = picture.settings.size;
         let n = PIXELS.min(width.saturating_mul(height));
         let wanted = |i| rays(picture, spread(i, picture.settings.size), &mut RayCounts::default());
-        let wanted: Vec<u32> = match self.lamps.is_empty() {
+        let wanted: Vec<u32> = match self.lamps.is_empty() || !may_be_asked(picture.settings) {
             true => Vec::new(),
             false => on_threads(picture.settings.threads, || (0..n).into_par_iter().map(wanted).collect()),
         };
@@ -91,15 +91,14 @@ fn white(settings: &ResolvedSettings) -> f64 {
     1.0 / exp2(settings.exposure)
 }
 
-/// How many rays of each sample find what a pixel is seen to emit: none where no outline of a lamp is seen in it, or where its only sample
-/// is to go through its centre; else as many as leave no more noise than the edge of white paper has; a power of two. The rays that ask are counted.
-#[inline(always)]
-pub fn rays(picture: Picture<'_>, pixel: [u32; 2], counts: &mut RayCounts) -> u32 {
-    if picture.settings.samples == 1 { 0 } else { rays_of_samples(picture, pixel, counts) }
+/// Whether outlines count at all: not where the only sample of a pixel is to go through its centre.
+pub fn may_be_asked(settings: &ResolvedSettings) -> bool {
+    settings.samples != 1
 }
 
-/// The same of samples that go anywhere in a pixel.
-fn rays_of_samples(picture: Picture<'_>, pixel: [u32; 2], counts: &mut RayCounts) -> u32 {
+/// How many rays of each sample find what a pixel is seen to emit: none where no outline of a lamp is seen in it; else as many as leave no more
+/// noise than the edge of white paper has; a power of two. The rays that ask are counted.
+pub fn rays(picture: Picture<'_>, pixel: [u32; 2], counts: &mut RayCounts) -> u32 {
     let Outlines { lamps, most } = picture.tracer.outlines();
     if *most == 0 || !may_show(picture, pixel, lamps) {
         return 0;

@@ -165,6 +165,7 @@ impl Sample {
 }
 
 /// The ray of a sample: through the pixel's centre for the only one, else through a point that its filter chooses.
+#[inline(always)]
 fn camera_ray(picture: Picture<'_>, pixel: [u32; 2], sampler: &mut Sampler) -> Option<Ray> {
     let within = match picture.settings.samples {
         1 => DVec2::splat(0.5),
@@ -186,6 +187,7 @@ pub(super) fn corner([x, y]: [u32; 2]) -> DVec2 {
 }
 
 /// A ray through a place of the picture, from a place of the lens where there is one.
+#[inline(always)]
 pub(super) fn ray_through(view: &View, place: DVec2, sampler: &mut Sampler) -> Option<Ray> {
     let lens = if view.has_lens() { sampler.next_2d() } else { DVec2::ZERO };
     view.ray(place, lens)

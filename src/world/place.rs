@@ -4,7 +4,7 @@
 use super::aggregate::{Aggregate, Group, INHERITED, Instance, Item, mesh_material};
 use super::query::Candidate;
 use super::shape::csg::Solid;
-use super::shape::{LocalRay, Meet, Shape, carry};
+use super::shape::{Csg, LocalRay, Meet, Shape, carry};
 use super::{Hit, PrimitiveId, Provenance, World};
 use crate::math::Affine;
 use glam::DVec3;
@@ -218,12 +218,27 @@ impl World {
     }
 
     /// A part's own material wins, then its object's, then its mesh's, then that of the groups around it, from inside out.
+    #[inline(always)]
     fn material_on(&self, path: &Path<'_>, shape: Option<&Shape>, candidate: &Candidate) -> u32 {
-        let id = candidate.id;
-        let of_part = shape.map_or(INHERITED, |shape| part_material(shape, &candidate.meet));
-        if of_part != INHERITED {
-            return of_part;
+        match (shape, path.aggregate, &path.steps[..]) {
+            (Some(Shape::Csg(csg)), ..) => {
+                let of_part = part_material(csg, &candidate.meet);
+                if of_part != INHERITED { of_part } else { self.material_around(path, candidate) }
+            }
+            // What most things and most meshes have.
+            (_, Aggregate::Group(group), _) if group.material[candidate.id.shape as usize] != INHERITED => {
+                group.material[candidate.id.shape as usize]
+            }
+            (_, Aggregate::Mesh(_), [.., step]) if step.group.material[step.item as usize] != INHERITED => {
+                step.group.material[step.item as usize]
+            }
+            _ => self.material_around(path, candidate),
         }
+    }
+
+    /// The same of what is no part.
+    fn material_around(&self, path: &Path<'_>, candidate: &Candidate) -> u32 {
+        let id = candidate.id;
         let mut placed = path.steps.iter().rev().map(|step| step.group.material[step.item as usize]);
         let own = match path.aggregate {
             Aggregate::Group(group) => group.material[id.shape as usize],
@@ -271,8 +286,7 @@ impl World {
 }
 
 /// The material that the part of a solid has of its own.
-fn part_material(shape: &Shape, meet: &Meet) -> u32 {
-    let Shape::Csg(csg) = shape else { return INHERITED };
+fn part_material(csg: &Csg, meet: &Meet) -> u32 {
     let part = csg.part(meet);
     match &part.solid {
         Solid::Mesh(mesh, materials) if part.material == INHERITED => {

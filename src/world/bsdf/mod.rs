@@ -37,6 +37,8 @@ pub struct Bsdf {
     pub normal: DVec3,
     /// True where `wo` lies on the side that the surface's own normal leaves.
     pub outside: bool,
+    /// True where its material is known to have a matt base alone: all else is as of [`Bsdf::BARE`], and need not be looked at.
+    plain: bool,
     /// Share of the surface that is there.
     pub opacity: f64,
     /// Radiance sent out on the normal's side.
@@ -122,7 +124,9 @@ impl Bsdf {
         let sight = Sight::new(hit, ray);
         Ok(match &hit.coat.same {
             // Most surfaces: what they do not do is written, not copied.
-            Same::Matt(albedo) => slot.write(Bsdf { diffuse: *albedo, ..Bsdf::BARE.seen(&sight) }),
+            Same::Matt(albedo) => {
+                slot.write(Bsdf { diffuse: *albedo, plain: true, ..Bsdf::BARE.seen(&sight) })
+            }
             Same::All(same) => slot.write(same.seen(&sight)),
             Same::No => {
                 let bsdf = slot.write(Bsdf::BARE.seen(&sight));
@@ -152,6 +156,7 @@ impl Bsdf {
         geometric: DVec3::Z,
         normal: DVec3::Z,
         outside: true,
+        plain: false,
         opacity: 1.0,
         emit: Rgb::ZERO,
         ambient: Rgb::ZERO,
@@ -171,6 +176,7 @@ impl Bsdf {
     fn add(&mut self, material: &Material, at: &TexturePoint<'_>) -> Sampled<()> {
         let colour = |t| texture::colour(t, at);
         self.diffuse = colour(&material.diffuse)?;
+        self.plain = material.layers.is_none();
         let Some(layers) = material.layers.as_deref() else { return Ok(()) };
         let number = |t| texture::number(t, at);
         self.opacity = texture::opacity(&layers.opacity, at)?;
@@ -205,8 +211,9 @@ impl Bsdf {
     }
 
     /// Radiance that the surface sends out to `wo`: on its normal's side, and inward too from a closed solid.
+    #[inline]
     pub fn emitted(&self, world: &World, hit: &Hit<'_>) -> Rgb {
-        if self.emit == Rgb::ZERO || self.outside || world.emits_inward(hit.primitive) {
+        if self.plain || self.emit == Rgb::ZERO || self.outside || world.emits_inward(hit.primitive) {
             self.emit
         } else {
             Rgb::ZERO
@@ -224,19 +231,19 @@ impl Bsdf {
     /// True where light that comes from somewhere in particular is sent on: where lights need to be asked at all.
     #[inline]
     pub fn has_base(&self) -> bool {
-        self.diffuse != Rgb::ZERO || self.specular != Rgb::ZERO
+        self.diffuse != Rgb::ZERO || (!self.plain && self.specular != Rgb::ZERO)
     }
 
     /// True where a ray goes on, mirrored or through the surface.
     #[inline]
     pub fn goes_on(&self) -> bool {
-        self.is_transmissive() || !matches!(self.mirror, Mirror::None)
+        !self.plain && (self.is_transmissive() || !matches!(self.mirror, Mirror::None))
     }
 
     /// True where the mirror is a lobe with a width.
     #[inline]
     pub fn is_glossy(&self) -> bool {
-        self.roughness > 0.0 && !matches!(self.mirror, Mirror::None)
+        !self.plain && self.roughness > 0.0 && !matches!(self.mirror, Mirror::None)
     }
 
     /// The base times the cosine of `wi` to the normal: what is sent on of the irradiance from `wi`, per steradian. 0 from
@@ -249,6 +256,9 @@ impl Bsdf {
             return Rgb::ZERO;
         }
         let mut sent = self.diffuse * FRAC_1_PI;
+        if self.plain {
+            return sent * lit;
+        }
         if self.specular != Rgb::ZERO {
             sent += self.specular * lobes::specular(self.lobe, self.exponent, self.normal, self.wo, wi);
         }
@@ -391,7 +401,7 @@ impl Bsdf {
     /// True where light is let through the surface, and not only past it.
     #[inline]
     pub fn is_transmissive(&self) -> bool {
-        self.transmit != Rgb::ZERO
+        !self.plain && self.transmit != Rgb::ZERO
     }
 
     /// Index beyond the surface over the index on the side of `wo`.

@@ -149,10 +149,10 @@ impl Bsdf {
     /// Whether the matt part is all there is of it.
     #[inline]
     fn is_matt(&self) -> bool {
-        matches!(self.mirror, Mirror::None)
-            && self.specular == Rgb::ZERO
-            && self.transmit == Rgb::ZERO
-            && self.diffuse != Rgb::ZERO
+        let nothing_else = || {
+            matches!(self.mirror, Mirror::None) && self.specular == Rgb::ZERO && self.transmit == Rgb::ZERO
+        };
+        (self.plain || nothing_else()) && self.diffuse != Rgb::ZERO
     }
 
     /// By what each would send on if light came evenly from everywhere. Asked once a surface: they take the mirror's share.

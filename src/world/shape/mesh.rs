@@ -153,6 +153,7 @@ impl MeshShape {
     }
 
     /// The surface of a triangle of the mesh, with its tangent where its normal is to be `bent` by a map.
+    #[inline(always)]
     pub fn surface(&self, triangle: u32, meet: &Meet, bent: bool) -> Surface {
         let mesh = &self.mesh;
         let indices = mesh.triangles[triangle as usize];
