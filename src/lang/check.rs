@@ -93,8 +93,17 @@ fn check_property(ctx: &mut dyn Context, kind: &'static Kind, given: &mut Given)
             Err(ctx.fail(unknown_property(kind, &given.name, given.name_span)))
         };
     };
+    if is_one_that_stays(property, given) {
+        return Ok(());
+    }
     flatten_list(property, given);
     if property.many { check_many(ctx, property, given) } else { check_row(ctx, property, given) }
+}
+
+/// Whether there is one value, of the only type that the property takes, in the form that builders read: so are most.
+#[inline]
+fn is_one_that_stays(property: &Property, given: &Given) -> bool {
+    matches!((property.takes, &given.values[..]), ([[kind]], [(value, _)]) if coerce::stays(*kind, value))
 }
 
 /// "`sphere` has no property `radus`", with the nearest, or all that there are.
@@ -358,8 +367,9 @@ fn check_missing(ctx: &mut dyn Context, block: &Block) -> Outcome<()> {
     let there = |p: &Property| {
         block.given.iter().any(|g| *g.name == *p.name) || block.poisoned.iter().any(|(n, _)| **n == *p.name)
     };
-    let missing: Vec<&Property> = block.kind.own.iter().filter(|p| p.required && !there(p)).collect();
-    let Some(first) = missing.first() else { return Ok(()) };
+    let missing = || block.kind.own.iter().filter(|p| p.required && !there(p));
+    let Some(first) = missing().next() else { return Ok(()) };
+    let missing: Vec<&Property> = missing().collect();
     let names: Vec<String> = missing.iter().map(|p| format!("`{}`", p.name)).collect();
     let nearest_unknown = block.given.iter().find(|g| {
         block.kind.property(&g.name).is_none() && crate::diag::nearest(&g.name, [first.name]).is_some()

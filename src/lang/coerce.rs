@@ -94,6 +94,20 @@ pub fn coerce(ctx: &mut dyn Context, kind: Type, value: &Value, span: Span) -> R
     }
 }
 
+/// Whether a value is of a type and in the form that builders read, so that [`coerce`] would give it back: at once, for the commonest types. False
+/// says nothing.
+#[inline]
+pub fn stays(kind: Type, value: &Value) -> bool {
+    match (kind, value) {
+        (Type::Number { min, max }, Value::Number(x)) => x.is_finite() && (min..=max).contains(x),
+        (Type::Positive, Value::Number(x)) => x.is_finite() && *x > 0.0,
+        (Type::Vector3, Value::Vector3(v)) => v.is_finite(),
+        (Type::Texture | Type::Colour, Value::Vector3(c)) => c.is_finite() && c.min_element() >= 0.0,
+        (Type::Material, Value::Material(_)) | (Type::Object, Value::Object(_)) => true,
+        _ => false,
+    }
+}
+
 /// A texture from a value that passed as [`Type::Texture`] or [`Type::NumberTexture`].
 pub fn texture(value: &Value) -> Option<Texture> {
     match value {
