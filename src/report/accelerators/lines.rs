@@ -1,9 +1,12 @@
 //! Rays through a mesh: from a camera, toward a light, diffusely on; and hard ones, through its edges and corners.
 
 use super::subject::{Line, Subject};
+use crate::diag::{SourceId, Span};
 use crate::geometry::mesh::Mesh;
 use crate::math::Aabb;
+use crate::math::elementary::atan2;
 use crate::math::random::Random;
+use crate::scene::{Camera, Projection};
 use crate::world::packet::RAYS;
 use glam::DVec3;
 
@@ -44,14 +47,35 @@ fn vector(random: &mut Random) -> DVec3 {
     DVec3::from_array(std::array::from_fn(|_| random.between(-1.0, 1.0)))
 }
 
-/// Rays of a square picture of the whole mesh, `side` a side, row by row.
-pub fn camera(mesh: &Mesh, side: usize) -> Vec<Line> {
+/// The camera that sees the whole mesh in a square picture: the half of its width is half as far as it is away.
+pub fn view_of(mesh: &Mesh) -> Camera {
     let bounds = Aabb::of(mesh.positions.iter().copied());
     let (middle, reach) = (bounds.center(), bounds.size().length() / 2.0);
-    let forward = -DVec3::new(0.4, 0.5, 1.0).normalize();
+    Camera {
+        label: None,
+        eye: middle + DVec3::new(0.4, 0.5, 1.0).normalize() * reach * 2.0,
+        look_at: middle,
+        up: DVec3::Y,
+        fov: 2.0 * atan2(1.0, 2.0).to_degrees(),
+        projection: Projection::Perspective,
+        aperture: 0.0,
+        focus: None,
+        span: Span::new(SourceId(0), 0, 0),
+    }
+}
+
+/// Where the light stands.
+pub fn light_of(mesh: &Mesh) -> DVec3 {
+    let bounds = Aabb::of(mesh.positions.iter().copied());
+    bounds.center() + DVec3::new(0.7, 1.0, 0.3) * bounds.size().length()
+}
+
+/// Rays of a square picture of the whole mesh, `side` a side, row by row.
+pub fn camera(mesh: &Mesh, side: usize) -> Vec<Line> {
+    let Camera { eye: origin, look_at, .. } = view_of(mesh);
+    let forward = (look_at - origin).normalize();
     let right = forward.cross(DVec3::Y).normalize();
     let up = right.cross(forward);
-    let origin = middle - forward * reach * 2.0;
     let part = move |i: usize| (i as f64 + 0.5) / side as f64 - 0.5;
     let line = move |i: usize| {
         let direction = (forward + right * part(i % side) - up * part(i / side)).normalize();
@@ -63,9 +87,8 @@ pub fn camera(mesh: &Mesh, side: usize) -> Vec<Line> {
 /// The three sets: a picture of `side` by `side`, and from each place that it sees a ray to a light and one anywhere.
 pub fn sets(mesh: &Mesh, seen_by: &Subject<'_>, side: usize) -> Vec<Set> {
     let camera = camera(mesh, side);
-    let bounds = Aabb::of(mesh.positions.iter().copied());
-    let size = bounds.size().length();
-    let light = bounds.center() + DVec3::new(0.7, 1.0, 0.3) * size;
+    let size = Aabb::of(mesh.positions.iter().copied()).size().length();
+    let light = light_of(mesh);
     let mut random = Random::new(21);
     let (mut shadow, mut diffuse) = (Vec::new(), Vec::new());
     for line in &camera {
@@ -79,6 +102,22 @@ pub fn sets(mesh: &Mesh, seen_by: &Subject<'_>, side: usize) -> Vec<Set> {
         Set { any: true, ..Set::new("shadow", shadow) },
         Set::new("diffuse", diffuse),
     ]
+}
+
+/// Rays to the light from the places that a picture sees lit: those whose face is seen from the light's side.
+pub fn lit(mesh: &Mesh, seen_by: &Subject<'_>, camera: &[Line]) -> Set {
+    let size = Aabb::of(mesh.positions.iter().copied()).size().length();
+    let light = light_of(mesh);
+    let toward_light = |line: &Line| {
+        let (t, triangle) = seen_by.meet(line, false)?;
+        let [a, b, c] = mesh.triangles[triangle as usize].map(|p| mesh.positions[p as usize]);
+        let normal = (b - a).cross(c - a);
+        let origin = line.origin + line.direction * (t - OFFSET * size);
+        let direction = light - origin;
+        let faces_light = normal.dot(direction) * -normal.dot(line.direction) > 0.0;
+        faces_light.then_some(Line { origin, direction, t_max: 1.0 })
+    };
+    Set { any: true, ..Set::new("shadow", camera.iter().filter_map(toward_light).collect()) }
 }
 
 /// The rays of a square picture, square after square of pixels, each row by row, to be asked together. The side is a multiple of a square's.

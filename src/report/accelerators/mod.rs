@@ -3,6 +3,7 @@
 //!
 //! All trees stand over the same triangles with the same test of each, so that they alone differ.
 
+pub mod frames;
 pub mod lines;
 pub mod meshes;
 pub mod page;
@@ -10,6 +11,7 @@ pub mod rays;
 pub mod subject;
 
 use crate::geometry::mesh::Mesh;
+use frames::FrameRow;
 use lines::{Set, anywhere, at_edges, camera, in_squares, sets};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -96,6 +98,8 @@ pub struct AcceleratorRow {
     pub references: usize,
     /// By sort of ray.
     pub rays: Vec<RayRow>,
+    /// Whole pictures of the mesh; of the tree that scenes use, where nothing grows.
+    pub frames: Vec<FrameRow>,
     /// Rays compared with all triangles.
     pub checked: usize,
     /// Those that met something else, or were blocked otherwise.

@@ -6,6 +6,7 @@ use crate::commands;
 use crate::speech::{Ended, Exit, Failure, tell};
 use ogee::diag::{SourceId, Span};
 use ogee::geometry::mesh::Mesh;
+use ogee::report::accelerators::frames::frames;
 use ogee::report::accelerators::meshes::{KINDS, procedural};
 use ogee::report::accelerators::{AcceleratorRow, Plan, measure, over_pixels, page};
 use ogee::report::row::Machine;
@@ -31,11 +32,11 @@ pub fn run(args: &Accelerators) -> Ended {
     let kinds = if args.quick { &KINDS[..1] } else { &KINDS[..] };
     for kind in kinds {
         if let Some(mesh) = procedural(kind, TRIANGLES) {
-            report.add(one(kind, &mesh, &plan))?;
+            report.add(framed(one(kind, &mesh, &plan), &mesh, &plan))?;
         }
     }
     for (name, mesh) in &files {
-        report.add(one(name, mesh, &plan))?;
+        report.add(framed(one(name, mesh, &plan), mesh, &plan))?;
     }
     growing(&plan, |rows| report.add(rows))?;
     tell(format!("wrote {}", args.out.join("index.md").display()));
@@ -65,6 +66,12 @@ impl Report<'_> {
 fn one(name: &str, mesh: &Mesh, plan: &Plan) -> Vec<AcceleratorRow> {
     tell(format!("{name}: {} triangles", mesh.triangles.len()));
     measure(name, mesh, plan)
+}
+
+/// With whole pictures of the mesh, which are told of the first tree, that of scenes.
+fn framed(mut rows: Vec<AcceleratorRow>, mesh: &Mesh, plan: &Plan) -> Vec<AcceleratorRow> {
+    rows[0].frames = frames(mesh, plan);
+    rows
 }
 
 /// How cost grows with triangles, and with pixels.
