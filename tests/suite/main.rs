@@ -9,6 +9,7 @@ mod balls;
 mod command;
 mod denoise;
 mod diagnostics;
+mod endless;
 mod explain;
 mod fuzz;
 mod golden;

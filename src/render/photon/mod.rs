@@ -17,6 +17,7 @@
 //! *Progressive Photon Mapping: A Probabilistic Approach*, 2011). Those of caustics are sent only to what may be the first mirror or glass on
 //! their way; all others would leave none.
 
+mod given_up;
 mod map;
 mod shoot;
 

@@ -1,5 +1,6 @@
 //! Light followed from the lamps: where it arrives on surfaces that spread it, photons are left. Knows nothing of cameras.
 
+use super::given_up::{GivenUp, Lost, Owner};
 use super::map::Photon;
 use crate::math::colour::mean;
 use crate::render::medium::Inside;
@@ -9,9 +10,9 @@ use crate::render::tiles::Watch;
 use crate::scene::{Rgb, SamplerKind};
 use crate::world::bsdf::{Bounce, Bsdf};
 use crate::world::light::{Aim, Choice, Light, Lights};
-use crate::world::texture::Sampled;
 use crate::world::{Hit, Ray, RayKind, World};
 use rayon::prelude::*;
+use std::ops::Range;
 
 /// What is shot, into what.
 #[derive(Clone, Copy)]
@@ -95,15 +96,16 @@ impl Shooting<'_> {
     /// The photons of so many paths, or of fewer where there are as many photons as can be kept. None where
     /// the work is called off.
     pub fn photons(&self, paths: u32, most: usize) -> Option<Vec<Photon>> {
-        let mut photons = Vec::new();
+        let (mut photons, mut given_up) = (Vec::new(), GivenUp::default());
         let mut shot = 0;
         while shot < paths && photons.len() < most {
-            let batch = BATCH.min(paths - shot);
-            let chunks: Vec<u32> = (shot..shot + batch).step_by(CHUNK as usize).collect();
-            let of = |&first: &u32| self.chunk(first, (first + CHUNK).min(shot + batch));
-            let found: Vec<Vec<Photon>> = chunks.par_iter().map(of).collect();
-            photons.extend(found.into_iter().flatten());
-            shot += batch;
+            let batch = shot..paths.min(shot + BATCH);
+            while shot < batch.end {
+                // No more at once than before: what photons are to leave alone, the first few tell.
+                let part = shot..batch.end.min((2 * shot).max(1));
+                shot = part.end;
+                photons.extend(self.part(part, &mut given_up));
+            }
             self.watch.progress.tiles(shot as usize, paths as usize);
             self.watch.go_on()?;
         }
@@ -112,16 +114,28 @@ impl Shooting<'_> {
         Some(photons)
     }
 
-    fn chunk(&self, first: u32, end: u32) -> Vec<Photon> {
-        let mut photons = Vec::new();
-        for path in (first..end).take_while(|_| !self.watch.is_over()) {
-            // What a surface's function leaves undefined is said by the camera's rays, if they see it.
-            let _ = self.shoot(path, &mut photons);
-        }
-        photons
+    /// The photons of some paths, in their order. What they tell of is given up after them, so that threads leave no trace.
+    fn part(&self, paths: Range<u32>, given_up: &mut GivenUp) -> impl Iterator<Item = Photon> + use<> {
+        let chunks: Vec<u32> = paths.clone().step_by(CHUNK as usize).collect();
+        let of = |&first: &u32| self.chunk(first..paths.end.min(first + CHUNK), given_up);
+        let (photons, lost): (Vec<_>, Vec<_>) = chunks.par_iter().map(of).unzip();
+        given_up.learn(&lost.concat(), paths.len());
+        photons.into_iter().flatten()
     }
 
-    fn shoot(&self, path: u32, photons: &mut Vec<Photon>) -> Sampled<()> {
+    /// The photons of some paths, and whose functions ran too long for others.
+    fn chunk(&self, paths: Range<u32>, given_up: &GivenUp) -> (Vec<Photon>, Vec<Owner>) {
+        let (mut photons, mut lost) = (Vec::new(), Vec::new());
+        for path in paths.take_while(|_| !self.watch.is_over()) {
+            // What a surface's function leaves undefined is said by the camera's rays, if they see it.
+            if let Err(why) = self.shoot(path, given_up, &mut photons) {
+                lost.extend(why.too_long());
+            }
+        }
+        (photons, lost)
+    }
+
+    fn shoot(&self, path: u32, given_up: &GivenUp, photons: &mut Vec<Photon>) -> Result<(), Lost> {
         let column = self.round.wrapping_mul(COLUMNS) + u32::from(self.caustics);
         let mut sampler =
             Sampler::new(self.seed, column, rows::PHOTONS, path).of_kind(SamplerKind::Independent, 1);
@@ -132,14 +146,23 @@ impl Shooting<'_> {
         let power = emitted.power / often;
         let (inside, length) = (Inside::NOTHING, 0.0);
         let mut flight = Flight { ray: emitted.ray, power, inside, segment: 1, length, sampler };
-        while self.follow(light, &mut flight, photons)? {}
+        while self.follow(light, &mut flight, given_up, photons)? {}
         Ok(())
     }
 
     /// Takes a photon to the end of its ray and aims it anew. False where it ends.
-    fn follow(&self, light: &Light, flight: &mut Flight, photons: &mut Vec<Photon>) -> Sampled<bool> {
+    fn follow(
+        &self,
+        light: &Light,
+        flight: &mut Flight,
+        given_up: &GivenUp,
+        photons: &mut Vec<Photon>,
+    ) -> Result<bool, Lost> {
         let Some(hit) = self.world.closest(&flight.ray) else { return Ok(false) };
-        let bsdf = Bsdf::at(self.world, &hit, &flight.ray)?;
+        if given_up.has(hit.material()) {
+            return Ok(false);
+        }
+        let bsdf = Bsdf::at(self.world, &hit, &flight.ray).map_err(|fault| Lost::at(&hit, fault))?;
         flight.power *= flight.inside.left(&bsdf, hit.t);
         flight.length += hit.t;
         if bsdf.opacity < 1.0 && flight.sampler.next_1d() >= bsdf.opacity {
