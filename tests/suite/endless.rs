@@ -95,6 +95,22 @@ fn photons_leave_a_material_alone_whose_function_runs_without_end() {
 }
 
 #[test]
+fn photons_do_not_leave_a_lamp_whose_function_runs_without_end() {
+    for is_aimed in [false, true] {
+        let counter = Arc::default();
+        let glows = Layers { emit: endless(&counter, EVERYWHERE), ..Layers::DEFAULT };
+        let lamp = Material { diffuse: Texture::ZERO, layers: Some(Box::new(glows)), span: SPAN };
+        let glass = is_aimed.then(|| object(sphere(DVec3::X, 0.2), &glass(1.5)));
+        let lamp = object(floor(-1.0, 0.0), &Arc::new(lamp));
+        let runs = runs(&counter, glass.into_iter().chain([lamp]).collect());
+        assert!(
+            runs < 8 * PIXELS + 64,
+            "{runs} runs, of which pixels that are seen and lit explain few each"
+        );
+    }
+}
+
+#[test]
 fn what_photons_leave_alone_is_told_where_it_is_seen() {
     let told = |tracer| {
         let half = object(floor(-1.0, 1.0), &paint(&Arc::default(), 0.0, false));

@@ -249,7 +249,7 @@ fn received(world: &World, aim: &Aim, n: u32) -> [(f64, f64); 3] {
     for path in 0..n {
         let mut sampler = Sampler::new(3, 0, 0, path);
         let (side, place, way) = (sampler.next_2d(), sampler.next_2d(), sampler.next_2d());
-        let Some(emitted) = lights.lights[0].emit(place, way, side.y, aim) else { continue };
+        let Ok(Some(emitted)) = lights.lights[0].emit(place, way, side.y, aim) else { continue };
         let Some(hit) = world.closest(&emitted.ray) else { continue };
         if let Some((sum, count)) = sums.get_mut(hit.primitive.shape as usize) {
             *sum += emitted.power.x / f64::from(n);

@@ -1,22 +1,22 @@
-//! What photons no longer come to: materials with a function that runs too long. Each photon that comes there would run it until its guard says no,
-//! and bring nothing. Knows nothing of how photons are followed.
+//! What photons no longer leave or come to: lamps and materials with a function that runs too long. Each photon there would run it until its guard says
+//! no, and bring nothing. Knows nothing of how photons are followed.
 //!
 //! A function without an end is known by the first few photons; one that seldom fails to end is borne with, so that the light of all other places
 //! is kept.
 
 use crate::math::field::FaultKind;
-use crate::scene::Material;
 use crate::world::Hit;
 use crate::world::texture::TextureFault;
 use std::collections::HashSet;
 
-/// A material, by its address: it is only asked whether two are the same, so that addresses leave no trace in a picture.
+/// A lamp or a material, by its address: it is only asked whether two are the same, so that addresses leave no trace in a picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Owner(usize);
 
 impl Owner {
-    fn of(material: &Material) -> Owner {
-        Owner(std::ptr::from_ref(material).addr())
+    /// Of a function: a lamp or a material.
+    pub fn of<T>(thing: &T) -> Owner {
+        Owner(std::ptr::from_ref(thing).addr())
     }
 }
 
@@ -25,15 +25,22 @@ impl Owner {
 pub enum Lost {
     /// Something has no value there.
     Undefined,
-    /// A function of this material ran too long.
+    /// A function of this ran too long.
     TooLong(Owner),
 }
 
 impl Lost {
+    /// At something of which a function has no value.
+    pub fn of(owner: Owner, fault: TextureFault) -> Lost {
+        if fault.kind == FaultKind::TooManyTurns { Lost::TooLong(owner) } else { Lost::Undefined }
+    }
+
     /// At a hit, since something has no value there. A function that makes the surface itself has run before its material could be left alone.
     pub fn at(hit: &Hit<'_>, fault: TextureFault) -> Lost {
-        let is_too_long = fault.kind == FaultKind::TooManyTurns && hit.fault.is_none();
-        if is_too_long { Lost::TooLong(Owner::of(hit.material())) } else { Lost::Undefined }
+        match hit.fault {
+            None => Lost::of(Owner::of(hit.material()), fault),
+            Some(_) => Lost::Undefined,
+        }
     }
 
     /// Whose function ran too long, if one did.
@@ -42,7 +49,7 @@ impl Lost {
     }
 }
 
-/// The materials that are given up.
+/// The lamps and materials that are given up.
 #[derive(Clone, Debug, Default)]
 pub struct GivenUp(HashSet<Owner>);
 
@@ -54,26 +61,31 @@ const FEWEST: usize = 4;
 const SHARE: usize = 1 << 8;
 
 impl GivenUp {
-    /// Whether photons end at a material.
+    /// Whether photons neither leave it nor go on from it.
     #[inline]
-    pub fn has(&self, material: &Material) -> bool {
-        !self.0.is_empty() && self.0.contains(&Owner::of(material))
+    pub fn has<T>(&self, thing: &T) -> bool {
+        !self.0.is_empty() && self.0.contains(&Owner::of(thing))
     }
 
-    /// Takes note of the photons that were lost of so many paths: where these are too many, their materials are given up, all of
-    /// them, as each of a thousand may be met seldom.
+    /// Takes note of the photons that were lost of so many paths: where these are too many, all that they were lost at is given up, as each of
+    /// a thousand materials may be met seldom.
     pub fn learn(&mut self, lost: &[Owner], paths: usize) {
-        if lost.len() >= FEWEST.max(paths / SHARE) {
+        if are_many(lost.len(), paths) {
             self.0.extend(lost);
         }
     }
+}
+
+/// Whether too many were lost of some paths.
+pub fn are_many(lost: usize, paths: usize) -> bool {
+    lost >= FEWEST.max(paths / SHARE)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::diag::{SourceId, Span};
-    use crate::scene::Texture;
+    use crate::scene::{Material, Texture};
 
     const SPAN: Span = Span { source: SourceId(0), start: 0, end: 0 };
 

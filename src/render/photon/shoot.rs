@@ -1,8 +1,9 @@
 //! Light followed from the lamps: where it arrives on surfaces that spread it, photons are left. Knows nothing of cameras.
 
-use super::given_up::{GivenUp, Lost, Owner};
+use super::given_up::{GivenUp, Lost, Owner, are_many};
 use super::map::Photon;
 use crate::math::colour::mean;
+use crate::math::field::FaultKind;
 use crate::render::medium::Inside;
 use crate::render::path::survival;
 use crate::render::sampler::{Sampler, rows};
@@ -83,13 +84,24 @@ const PROBING: u32 = 2;
 /// How often lights are chosen that are aimed: by what some rays of each carry.
 pub fn choice(lights: &Lights, aim: &Aim, seed: u64) -> Choice {
     let n = (PROBES[0] / lights.lights.len().max(1)).clamp(1, PROBES[1]) as u32;
-    let probe = |light: &Light, i: u32| {
+    Choice::by(lights.lights.iter().map(|light| probed(light, aim, seed, n)).collect())
+}
+
+/// The power that a light sends where it is aimed, by so many rays. Nothing where it is not known, since a function runs too long.
+fn probed(light: &Light, aim: &Aim, seed: u64, n: u32) -> f64 {
+    let (mut sum, mut lost) = (0.0, 0);
+    for i in 0..n {
         let mut sampler = Sampler::new(seed, PROBING, rows::PHOTONS, i);
         let (side, place, way) = (sampler.next_2d(), sampler.next_2d(), sampler.next_2d());
-        light.emit(place, way, side.y, aim).map_or(0.0, |emitted| mean(emitted.power))
-    };
-    let power = |light: &Light| (0..n).map(|i| probe(light, i)).sum::<f64>() / f64::from(n);
-    Choice::by(lights.lights.iter().map(power).collect())
+        match light.emit(place, way, side.y, aim) {
+            Ok(emitted) => sum += emitted.map_or(0.0, |emitted| mean(emitted.power)),
+            Err(fault) => lost += usize::from(fault.kind == FaultKind::TooManyTurns),
+        }
+        if are_many(lost, i as usize) {
+            return 0.0;
+        }
+    }
+    sum / f64::from(n)
 }
 
 impl Shooting<'_> {
@@ -142,7 +154,13 @@ impl Shooting<'_> {
         let (which, place, way) = (sampler.next_2d(), sampler.next_2d(), sampler.next_2d());
         let Some((i, often)) = self.choice.pick(which.x) else { return Ok(()) };
         let light = &self.lights.lights[i];
-        let Some(emitted) = light.emit(place, way, which.y, self.aim) else { return Ok(()) };
+        if given_up.has(light) {
+            return Ok(());
+        }
+        let emitted = light.emit(place, way, which.y, self.aim);
+        let Some(emitted) = emitted.map_err(|fault| Lost::of(Owner::of(light), fault))? else {
+            return Ok(());
+        };
         let power = emitted.power / often;
         let (inside, length) = (Inside::NOTHING, 0.0);
         let mut flight = Flight { ray: emitted.ray, power, inside, segment: 1, length, sampler };

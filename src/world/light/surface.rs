@@ -14,7 +14,7 @@ use crate::math::error::gamma;
 use crate::scene::{Cone, Rgb, Texture};
 use crate::world::emitter::{Emitter, EmitterShape};
 use crate::world::shape::{Uv, upright};
-use crate::world::texture::{self, TexturePoint};
+use crate::world::texture::{self, Sampled, TexturePoint};
 use glam::{DMat3, DVec2, DVec3};
 use std::f64::consts::{PI, TAU};
 
@@ -220,17 +220,22 @@ impl AreaLight {
         weight.is_finite().then_some(LightSample { wi, weight, pdf: Some(pdf), end })
     }
 
-    /// Its radiance at a point, less what is not there of it.
+    /// Its radiance at a point, less what is not there of it; nothing where a pattern of it has no value.
     #[inline]
     pub(super) fn emitted(&self, at: &SurfacePoint, uv: Uv, distance: f64) -> Rgb {
+        self.told(at, uv, distance).unwrap_or(Rgb::ZERO)
+    }
+
+    /// The same, or which pattern has none.
+    #[inline]
+    pub(super) fn told(&self, at: &SurfacePoint, uv: Uv, distance: f64) -> Sampled<Rgb> {
         match (&self.emission, &self.opacity) {
-            (Texture::Constant(radiance), Texture::Constant(opacity)) => *radiance * *opacity,
+            (Texture::Constant(radiance), Texture::Constant(opacity)) => Ok(*radiance * *opacity),
             _ => {
                 let local_point = self.local_from_world.point(at.point);
                 let (point, normal, t) = (at.point, at.normal, distance);
                 let point = TexturePoint { local_point, uv, point, normal, t, worn: None };
-                let radiance = texture::colour(&self.emission, &point).unwrap_or(Rgb::ZERO);
-                radiance * texture::opacity(&self.opacity, &point).unwrap_or(0.0)
+                Ok(texture::colour(&self.emission, &point)? * texture::opacity(&self.opacity, &point)?)
             }
         }
     }
