@@ -17,7 +17,7 @@
 //! | [`world`] | what rays see: shapes, trees, lights, BSDFs | scene, geometry, math, diag |
 //! | [`render`] | cameras, samplers, tracers, films, pictures on disk | world, scene, math, diag |
 //! | [`plot`] | figures: curves in a frame, as characters, SVG or pixels | math |
-//! | [`report`] | kernels measured: speed against error | render, world, scene, geometry, math |
+//! | [`report`] | kernels measured: speed against error | render, world, scene, geometry, math, diag |
 //! | [`session`] | the one door for the command line, the tests, the REPL | all of them |
 //!
 //! A test holds these directions against every `use crate::` of the tree.

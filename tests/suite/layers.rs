@@ -13,7 +13,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("world", &["scene", "geometry", "math", "diag"]),
     ("render", &["world", "scene", "math", "diag"]),
     ("plot", &["math"]),
-    ("report", &["plot", "render", "world", "scene", "geometry", "math"]),
+    ("report", &["plot", "render", "world", "scene", "geometry", "math", "diag"]),
     ("session", &["plot", "render", "world", "lang", "scene", "geometry", "math", "syntax", "diag"]),
 ];
 
