@@ -220,20 +220,14 @@ impl World {
     /// A part's own material wins, then its object's, then its mesh's, then that of the groups around it, from inside out.
     #[inline(always)]
     fn material_on(&self, path: &Path<'_>, shape: Option<&Shape>, candidate: &Candidate) -> u32 {
-        match (shape, path.aggregate, &path.steps[..]) {
-            (Some(Shape::Csg(csg)), ..) => {
-                let of_part = part_material(csg, &candidate.meet);
-                if of_part != INHERITED { of_part } else { self.material_around(path, candidate) }
-            }
-            // What most things and most meshes have.
-            (_, Aggregate::Group(group), _) if group.material[candidate.id.shape as usize] != INHERITED => {
-                group.material[candidate.id.shape as usize]
-            }
-            (_, Aggregate::Mesh(_), [.., step]) if step.group.material[step.item as usize] != INHERITED => {
-                step.group.material[step.item as usize]
-            }
-            _ => self.material_around(path, candidate),
-        }
+        // What most things and most meshes have is found on the spot.
+        let own = match (shape, path.aggregate, &path.steps[..]) {
+            (Some(Shape::Csg(csg)), ..) => part_material(csg, &candidate.meet),
+            (_, Aggregate::Group(group), _) => group.material[candidate.id.shape as usize],
+            (_, Aggregate::Mesh(_), [.., step]) => step.group.material[step.item as usize],
+            (_, Aggregate::Mesh(_), []) => INHERITED,
+        };
+        if own != INHERITED { own } else { self.material_around(path, candidate) }
     }
 
     /// The same of what is no part.

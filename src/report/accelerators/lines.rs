@@ -84,6 +84,11 @@ pub fn camera(mesh: &Mesh, side: usize) -> Vec<Line> {
     (0..side * side).map(line).collect()
 }
 
+/// A place that a ray meets in a mesh of a size, kept from it by as much as new rays need.
+fn place_of(line: &Line, t: f64, size: f64) -> DVec3 {
+    line.origin + line.direction * (t - OFFSET * size)
+}
+
 /// The three sets: a picture of `side` by `side`, and from each place that it sees a ray to a light and one anywhere.
 pub fn sets(mesh: &Mesh, seen_by: &Subject<'_>, side: usize) -> Vec<Set> {
     let camera = camera(mesh, side);
@@ -93,7 +98,7 @@ pub fn sets(mesh: &Mesh, seen_by: &Subject<'_>, side: usize) -> Vec<Set> {
     let (mut shadow, mut diffuse) = (Vec::new(), Vec::new());
     for line in &camera {
         let Some((t, _)) = seen_by.meet(line, false) else { continue };
-        let origin = line.origin + line.direction * (t - OFFSET * size);
+        let origin = place_of(line, t, size);
         shadow.push(Line { origin, direction: light - origin, t_max: 1.0 });
         diffuse.push(Line { origin, direction: vector(&mut random), t_max: f64::INFINITY });
     }
@@ -112,7 +117,7 @@ pub fn lit(mesh: &Mesh, seen_by: &Subject<'_>, camera: &[Line]) -> Set {
         let (t, triangle) = seen_by.meet(line, false)?;
         let [a, b, c] = mesh.triangles[triangle as usize].map(|p| mesh.positions[p as usize]);
         let normal = (b - a).cross(c - a);
-        let origin = line.origin + line.direction * (t - OFFSET * size);
+        let origin = place_of(line, t, size);
         let direction = light - origin;
         let faces_light = normal.dot(direction) * -normal.dot(line.direction) > 0.0;
         faces_light.then_some(Line { origin, direction, t_max: 1.0 })
