@@ -47,6 +47,8 @@ struct SharedMesh {
 struct Made {
     what: Arc<dyn Any + Send + Sync>,
     used: bool,
+    /// True of what a world before has made.
+    before: bool,
 }
 
 impl Kept {
@@ -62,10 +64,13 @@ impl Kept {
         }
         self.shared.retain(|_, mesh| std::mem::take(&mut mesh.used));
         self.reused.set(0);
-        self.made.get_mut().retain(|_, made| std::mem::take(&mut made.used));
+        self.made.get_mut().retain(|_, made| {
+            made.before = true;
+            std::mem::take(&mut made.used)
+        });
     }
 
-    /// How many things this world took over from those before.
+    /// How many things this world took over from those before; what it made itself, and took again, does not count.
     pub(super) fn reused(&self) -> u64 {
         self.reused.get()
     }
@@ -95,9 +100,9 @@ impl Kept {
         self.shared.insert(Arc::as_ptr(source), mesh);
     }
 
-    /// The content of something, written by `write`; none where no world follows that could ask for it.
+    /// The content of something, written by `write`; none where nobody could ask for it: no world follows, and this one does not.
     pub(super) fn content(&self, of: Of, write: impl FnOnce(&mut Content)) -> Option<Content> {
-        self.goes_on.then(|| {
+        (self.goes_on || of.is_dear()).then(|| {
             let mut content = Content::new(of);
             write(&mut content);
             content
@@ -109,7 +114,9 @@ impl Kept {
         let mut made = self.made.borrow_mut();
         let known = made.get_mut(content?)?;
         known.used = true;
-        self.reuse();
+        if known.before {
+            self.reuse();
+        }
         Arc::clone(&known.what).downcast().ok()
     }
 
@@ -117,7 +124,7 @@ impl Kept {
     pub(super) fn keep<T: Any + Send + Sync>(&self, content: Option<Content>, made: &Arc<T>) {
         if let Some(content) = content {
             let what: Arc<dyn Any + Send + Sync> = Arc::<T>::clone(made);
-            self.made.borrow_mut().insert(content, Made { what, used: true });
+            self.made.borrow_mut().entry(content).or_insert(Made { what, used: true, before: false });
         }
     }
 }

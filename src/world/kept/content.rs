@@ -33,6 +33,17 @@ pub(in crate::world) enum Of {
     Implicit,
 }
 
+impl Of {
+    /// Whether it takes so long to make that one world asks for it again: cells take a quarter of a second, and a loop may write the same formula in
+    /// each of its turns.
+    pub fn is_dear(self) -> bool {
+        match self {
+            Of::Implicit => true,
+            Of::Mesh | Of::Tessellation | Of::Skin | Of::Weights | Of::Swept => false,
+        }
+    }
+}
+
 /// What something is made of. Functions count as the same where they run the same steps on the same numbers.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub(in crate::world) struct Content {

@@ -138,3 +138,50 @@ impl Lowering<'_> {
         Some(Solid::Mesh(shape, materials))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use crate::diag::{SourceId, Span};
+    use crate::math::field::{Binary, FieldBuilder};
+    use crate::scene::assets::DiskLoader;
+    use crate::scene::{self, Node, Object, SampledFunction};
+    use crate::world::aggregate::{Aggregate, Item};
+    use crate::world::shape::{Implicit, Shape};
+    use crate::world::{World, WorldOptions};
+    use glam::DVec3;
+    use std::sync::Arc;
+
+    /// x + y + z − offset, written anew.
+    fn slant(offset: f64) -> Node {
+        let mut builder = FieldBuilder::new(3);
+        let [x, y, z] = [0, 1, 2].map(|i| builder.input(i));
+        let offset = builder.constant(offset);
+        let sum = builder.binary(Binary::Add, x, y);
+        let sum = builder.binary(Binary::Add, sum, z);
+        let slant = builder.binary(Binary::Sub, sum, offset);
+        let function = Arc::new(SampledFunction::of_point(builder.finish(&[slant]).expect("small")));
+        let implicit = scene::Implicit { function, within: (-DVec3::ONE, DVec3::ONE), gradient: None };
+        let span = Span::new(SourceId(0), 0, 0);
+        Node::Object(Arc::new(Object::new(scene::Shape::Implicit(Arc::new(implicit)), span)))
+    }
+
+    fn implicits(world: &World) -> Vec<Arc<Implicit>> {
+        let Aggregate::Group(group) = &world.aggregates[0] else { return Vec::new() };
+        let implicit = |item: &Item| match item {
+            Item::Shape(Shape::Implicit(implicit), _) => Some(Arc::clone(implicit)),
+            _ => None,
+        };
+        group.items.iter().filter_map(implicit).collect()
+    }
+
+    #[test]
+    fn the_cells_of_a_formula_that_is_written_twice_are_made_once() {
+        let nodes = [0.1, 0.1, 0.2].map(slant).to_vec();
+        let (world, _) = World::new(nodes, &WorldOptions::default(), &DiskLoader);
+        let made = implicits(&world);
+        let same = |a: usize, b: usize| Arc::ptr_eq(&made[a], &made[b]);
+        assert_eq!(made.len(), 3);
+        assert_eq!([same(0, 1), same(1, 2), same(0, 2)].into_iter().filter(|same| *same).count(), 1);
+        assert_eq!(world.stats().reused, 0, "no world was before");
+    }
+}
