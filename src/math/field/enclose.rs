@@ -184,6 +184,9 @@ pub struct Encloser<'f, const N: usize> {
     records: bool,
     undecided: u32,
     turns: u32,
+    /// What it gives up after.
+    most_undecided: u32,
+    most_turns: u32,
 }
 
 impl<'f, const N: usize> Encloser<'f, N> {
@@ -196,7 +199,16 @@ impl<'f, const N: usize> Encloser<'f, N> {
     pub fn reuse(field: &'f Field, mut registers: Vec<Enclosed<N>>) -> Self {
         registers.clear();
         registers.extend(field.initial.iter().map(|&x| Enclosed::constant(x)));
-        Encloser { field, registers, choices: Vec::new(), records: false, undecided: 0, turns: 0 }
+        Encloser {
+            field,
+            registers,
+            choices: Vec::new(),
+            records: false,
+            undecided: 0,
+            turns: 0,
+            most_undecided: UNDECIDED,
+            most_turns: TURNS,
+        }
     }
 
     /// The memory.
@@ -219,6 +231,13 @@ impl<'f, const N: usize> Encloser<'f, N> {
         let result = self.run(inputs);
         self.records = false;
         (result, &self.choices)
+    }
+
+    /// Whether the tape, at every point of these inputs, surely runs until its guard says no: nothing can be said of parts of them either.
+    pub fn is_endless(mut self, inputs: &[Enclosed<N>]) -> bool {
+        (self.most_undecided, self.most_turns) = (0, TURNS.max(self.field.turn_limit));
+        self.run(inputs);
+        self.turns > self.most_turns
     }
 
     fn run_from(&mut self, mut at: usize) -> Enclosed<N> {
@@ -247,7 +266,7 @@ impl<'f, const N: usize> Encloser<'f, N> {
                 None => at + 1,
                 Some(target) => {
                     self.turns += u32::from(target as usize <= at);
-                    if self.turns > TURNS {
+                    if self.turns > self.most_turns {
                         return Enclosed::ANYTHING;
                     }
                     target as usize
@@ -271,7 +290,7 @@ impl<'f, const N: usize> Encloser<'f, N> {
 
     fn both_ways(&mut self, one: usize, other: usize) -> Enclosed<N> {
         self.undecided += 1;
-        if self.undecided > UNDECIDED {
+        if self.undecided > self.most_undecided {
             return Enclosed::ANYTHING;
         }
         let kept = self.registers.clone();

@@ -205,6 +205,36 @@ fn jumps_are_followed_both_ways_where_they_are_not_decided() {
     assert!(open.value.partial && open.value.contains(4.0) && open.value.contains(1.5));
 }
 
+/// x after so many turns of a loop, or without end where x is less than y.
+fn looping(turns: f64) -> Field {
+    let mut b = FieldBuilder::new(2);
+    b.set_turn_limit(10_000);
+    let (x, y, one) = (b.input(0), b.input(1), b.constant(1.0));
+    let most = b.constant(turns);
+    let count = b.variable(one);
+    let turn = b.label();
+    b.bind(turn);
+    let next = b.binary(Binary::Add, count, one);
+    b.assign(count, next);
+    for again in [b.binary(Binary::Less, count, most), b.binary(Binary::Less, x, y)] {
+        b.jump_if_not_zero(again, turn);
+    }
+    b.finish(&[x]).unwrap()
+}
+
+#[test]
+fn what_ends_nowhere_is_told_from_what_ends_somewhere() {
+    let is_endless = |turns: f64, y: f64| {
+        let at =
+            [Interval::new(0.0, 1.0), Interval::point(y)].map(|value| Enclosed::<0> { value, slope: [] });
+        Encloser::new(&looping(turns)).is_endless(&at)
+    };
+    assert!(is_endless(1e9, 0.0) && is_endless(1.0, 2.0));
+    assert!(!is_endless(1.0, 0.0), "it ends at once");
+    assert!(!is_endless(9e3, 0.0), "it ends late");
+    assert!(!is_endless(1.0, 0.5), "it ends in the half of it");
+}
+
 #[test]
 fn a_shorter_tape_gives_the_same_bits() {
     let mut b = FieldBuilder::new(2);

@@ -53,6 +53,9 @@ pub(super) fn grow(field: &Field, bounds: Aabb) -> Cells {
     };
     let mut level: Vec<Trial> =
         growing.tried(Trial { place: Place::of(bounds), tape: 0, slot: None }).into_iter().collect();
+    if !level.is_empty() && is_endless(field, bounds) {
+        level.clear();
+    }
     let mut tried = 1;
     for _ in 0..DEEPEST {
         tried += 8 * level.len();
@@ -65,6 +68,12 @@ pub(super) fn grow(field: &Field, bounds: Aabb) -> Cells {
         growing.bend(growing.cells.root, Place::of(bounds));
     }
     growing.cells
+}
+
+/// Whether f is undefined all over the box, since it runs too long: each cell would take as long as the guard lets it, and tell nothing.
+fn is_endless(field: &Field, bounds: Aabb) -> bool {
+    let side = |i: usize| Interval::new(bounds.min[i], bounds.max[i]);
+    !field.is_straight() && Encloser::new(field).is_endless(&directions::<0>(std::array::from_fn(side), []))
 }
 
 /// An octree in the making.

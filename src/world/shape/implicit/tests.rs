@@ -359,6 +359,31 @@ fn where_the_function_is_undefined_is_met_as_such() {
     assert!(half.fault(&from_left, &meet).is_some_and(|f| f.kind == FaultKind::Undefined));
 }
 
+/// x + ½, after a loop without end where x is less than a limit.
+fn endless_below(limit: f64) -> Implicit {
+    implicit(2.0, |m, p| {
+        let limit = m.c(limit);
+        let again = m.0.binary(Binary::Less, p[0], limit);
+        let turn = m.0.label();
+        m.0.bind(turn);
+        m.0.jump_if_not_zero(again, turn);
+        m.plus(p[0], 0.5)
+    })
+}
+
+#[test]
+fn no_part_is_tried_of_a_function_without_end() {
+    let endless = endless_below(3.0);
+    assert_eq!(endless.cells.leaves.len(), 1);
+    let ahead = ray(DVec3::new(-5.0, 0.1, 0.2), DVec3::X);
+    let meet = endless.meet(&ahead, f64::MAX).expect("undefined");
+    assert!(endless.fault(&ahead, &meet).is_some_and(|f| f.kind == FaultKind::TooManyTurns));
+    let half = endless_below(-1.0);
+    assert!(half.cells.leaves.len() > 8, "where it ends it is known");
+    let found = distances(&half, &ray(DVec3::new(0.5, 0.1, 0.2), -DVec3::X));
+    assert!((found[0] - 1.0).abs() < 1e-12, "{found:?}");
+}
+
 #[test]
 fn a_jump_is_a_surface_and_a_pole_without_a_change_of_sign_is_none() {
     let step = implicit(2.0, |m, p| {
