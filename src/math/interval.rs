@@ -29,6 +29,21 @@ fn up(x: f64) -> f64 {
     x.next_up()
 }
 
+/// a + b where that is a floating-point number (Knuth's TwoSum tells).
+fn exact_sum(a: f64, b: f64) -> Option<f64> {
+    let sum = a + b;
+    let of_b = sum - a;
+    ((a - (sum - of_b)) + (b - of_b) == 0.0).then_some(sum)
+}
+
+/// a · b where that is a floating-point number: whole numbers all of whose digits there is room for.
+fn exact_product(a: f64, b: f64) -> Option<f64> {
+    const MOST: f64 = (1u64 << 53) as f64;
+    let product = a * b;
+    let are_whole = a.trunc() == a && b.trunc() == b;
+    (are_whole && product.abs() <= MOST).then_some(product)
+}
+
 impl Interval {
     /// No value at all.
     pub const EMPTY: Interval = Interval { lo: f64::INFINITY, hi: f64::NEG_INFINITY, partial: true };
@@ -43,6 +58,13 @@ impl Interval {
     /// A single number.
     pub const fn point(x: f64) -> Interval {
         Interval::new(x, x)
+    }
+
+    /// What an operation on two single numbers gives where it does not round, so that the turns of a loop are counted exactly. None otherwise.
+    fn exactly(self, b: Interval, operation: fn(f64, f64) -> Option<f64>) -> Option<Interval> {
+        let are_single = self.lo == self.hi && b.lo == b.hi;
+        let x = are_single.then(|| operation(self.lo, b.lo))??;
+        Some(Interval::point(x).with_partial(self.partial || b.partial))
     }
 
     /// True for no value at all (or NaN ends).
@@ -113,6 +135,9 @@ impl Interval {
     #[must_use]
     pub fn square(self) -> Interval {
         let a = self.abs();
+        if let Some(exact) = a.exactly(a, exact_product) {
+            return exact;
+        }
         Interval { lo: down(a.lo * a.lo).max(0.0), hi: up(a.hi * a.hi), partial: self.partial }
     }
 
@@ -271,6 +296,9 @@ impl Add for Interval {
     type Output = Interval;
 
     fn add(self, b: Interval) -> Interval {
+        if let Some(exact) = self.exactly(b, exact_sum) {
+            return exact;
+        }
         Interval { lo: down(self.lo + b.lo), hi: up(self.hi + b.hi), partial: self.partial || b.partial }
     }
 }
@@ -279,6 +307,9 @@ impl Sub for Interval {
     type Output = Interval;
 
     fn sub(self, b: Interval) -> Interval {
+        if let Some(exact) = self.exactly(-b, exact_sum) {
+            return exact;
+        }
         Interval { lo: down(self.lo - b.hi), hi: up(self.hi - b.lo), partial: self.partial || b.partial }
     }
 }
@@ -295,6 +326,9 @@ impl Mul for Interval {
         let partial = self.partial || b.partial;
         if self.is_empty() || b.is_empty() {
             return Interval::EMPTY;
+        }
+        if let Some(exact) = self.exactly(b, exact_product) {
+            return exact;
         }
         let p = [times(self.lo, b.lo), times(self.lo, b.hi), times(self.hi, b.lo), times(self.hi, b.hi)];
         let lo = p[0].min(p[1]).min(p[2].min(p[3]));
@@ -369,6 +403,22 @@ mod tests {
                 assert!(x.pow(y).contains(elementary::powf(p, q)), "{x:?} ^ {y:?} lacks {p} ^ {q}");
             }
         }
+    }
+
+    #[test]
+    fn what_does_not_round_is_a_single_number() {
+        let [two, five, tenth] = [2.0, 5.0, 0.1].map(Interval::point);
+        assert_eq!(
+            [two + five, two - five, two * five, five.square()],
+            [7.0, -3.0, 10.0, 25.0].map(Interval::point)
+        );
+        for rounded in [tenth + two, tenth - two, tenth * five, tenth.square()] {
+            assert!(rounded.width() > 0.0);
+        }
+        let most = Interval::point((1u64 << 53) as f64);
+        assert!((most + Interval::point(1.0)).contains(most.lo + 1.0) && (most * two).width() > 0.0);
+        assert!((Interval::point(f64::MAX) + Interval::point(f64::MAX)).lo < f64::INFINITY);
+        assert!((five.with_partial(true) + two).partial);
     }
 
     #[test]

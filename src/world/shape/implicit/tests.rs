@@ -359,6 +359,28 @@ fn where_the_function_is_undefined_is_met_as_such() {
     assert!(half.fault(&from_left, &meet).is_some_and(|f| f.kind == FaultKind::Undefined));
 }
 
+#[test]
+fn the_turns_of_a_loop_hide_no_surface() {
+    for n in [40.0, 1000.0] {
+        let ball = implicit(2.0, |m, p| {
+            let (zero, one, most) = (m.c(0.0), m.c(1.0), m.c(n));
+            let (count, sum) = (m.0.variable(zero), m.0.variable(zero));
+            let turn = m.0.label();
+            m.0.bind(turn);
+            let (squares, next) = (m.squares(&p), m.add(count, one));
+            let sum_after = m.add(sum, squares);
+            m.0.assign(sum, sum_after);
+            m.0.assign(count, next);
+            let again = m.0.binary(Binary::Less, count, most);
+            m.0.jump_if_not_zero(again, turn);
+            m.plus(sum, -n)
+        });
+        let found = distances(&ball, &ray(DVec3::new(-5.0, 0.0, 0.0), DVec3::X));
+        assert_eq!(found.len(), 2, "{found:?}");
+        assert!((found[0] - 4.0).abs() < 1e-11 && (found[1] - 6.0).abs() < 1e-11, "{found:?}");
+    }
+}
+
 /// x + ½, after a loop without end where x is less than a limit.
 fn endless_below(limit: f64) -> Implicit {
     implicit(2.0, |m, p| {
