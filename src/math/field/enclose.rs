@@ -233,6 +233,11 @@ impl<'f, const N: usize> Encloser<'f, N> {
         (result, &self.choices)
     }
 
+    /// How many turns the loops of the last run took.
+    pub fn turns(&self) -> u32 {
+        self.turns
+    }
+
     /// Whether the tape, at every point of these inputs, surely runs until its guard says no: nothing can be said of parts of them either.
     pub fn is_endless(mut self, inputs: &[Enclosed<N>]) -> bool {
         (self.most_undecided, self.most_turns) = (0, TURNS.max(self.field.turn_limit));

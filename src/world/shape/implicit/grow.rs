@@ -16,6 +16,9 @@ use std::collections::HashMap;
 /// No more cells are tried than this: about a twentieth of a second for a function of twenty operations.
 const MOST_TRIED: usize = 60_000;
 
+/// So many turns of a function's loops take about as long as a cell of one that has none.
+const TURNS_OF_A_CELL: usize = 8;
+
 /// No cell is halved more often than this.
 const DEEPEST: u32 = 7;
 
@@ -50,16 +53,16 @@ pub(super) fn grow(field: &Field, bounds: Aabb) -> Cells {
         forms: Vec::new(),
         quadratics: Vec::new(),
         folds: HashMap::new(),
+        n_tried: 0,
+        turns: 0,
     };
     let mut level: Vec<Trial> =
         growing.tried(Trial { place: Place::of(bounds), tape: 0, slot: None }).into_iter().collect();
     if !level.is_empty() && is_endless(field, bounds) {
         level.clear();
     }
-    let mut tried = 1;
     for _ in 0..DEEPEST {
-        tried += 8 * level.len();
-        if tried > MOST_TRIED {
+        if growing.cost_with(8 * level.len()) > MOST_TRIED {
             break;
         }
         level = level.into_iter().flat_map(|cell| growing.halved(&cell)).collect();
@@ -87,9 +90,18 @@ struct Growing {
     quadratics: Vec<Quadratic>,
     /// By their tapes.
     folds: HashMap<u32, Option<Fold>>,
+    n_tried: usize,
+    /// How many turns the loops of f have taken.
+    turns: usize,
 }
 
 impl Growing {
+    /// What all costs, in cells of a function without loops, after so many more.
+    fn cost_with(&self, more: usize) -> usize {
+        let n = self.n_tried + more;
+        n + self.turns / TURNS_OF_A_CELL * n / self.n_tried
+    }
+
     /// Puts a cell in its place; gives it back with its tape where it should be halved.
     fn tried(&mut self, trial: Trial) -> Option<Trial> {
         let (cell, again) = match self.verdict(&trial) {
@@ -121,6 +133,7 @@ impl Growing {
     }
 
     fn verdict(&mut self, trial: &Trial) -> Verdict {
+        self.n_tried += 1;
         let (middle, half) = self.sides(&trial.place);
         let inputs = inputs(middle, half);
         let field = &self.cells.tapes[trial.tape as usize];
@@ -197,6 +210,8 @@ impl Growing {
         let field = &self.cells.tapes[trial.tape as usize];
         let mut encloser = Encloser::new(field);
         let (all, choices) = encloser.run_choosing(&directions(box_of, [DVec3::X, DVec3::Y, DVec3::Z]));
+        let choices = choices.to_vec();
+        self.turns += encloser.turns() as usize;
         let unclear = |tape| Verdict::Unclear { tape, plane: None, halve: true };
         if all.value.partial {
             return unclear(trial.tape);
@@ -208,7 +223,6 @@ impl Growing {
         if !values.contains(0.0) {
             return Verdict::Empty(values.hi < 0.0);
         }
-        let choices = choices.to_vec();
         unclear(self.shorter_tape(trial.tape, choices))
     }
 
