@@ -2,6 +2,7 @@
 //! placement is counted.
 
 use super::RayKind;
+use super::bvh::fetch_entry;
 use super::query::is_hidden;
 use super::shape::mesh::MeshShape;
 use super::shape::{Csg, EVERYTHING, Shape, image_of};
@@ -167,6 +168,7 @@ impl Group {
         for i in 0..position.len() {
             while position[i] as usize != i {
                 let to = position[i] as usize;
+                fetch_entry(&self.items, position[to] as usize);
                 self.items.swap(i, to);
                 position.swap(i, to);
             }

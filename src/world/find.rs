@@ -1,5 +1,7 @@
 //! What rays meet first: found by one step, and looked at by another. Camera rays take the first together.
 
+use super::aggregate::{Aggregate, INHERITED};
+use super::bvh::fetch_entry;
 use super::packet::{Packet, RAYS};
 use super::query::packet::Queries;
 use super::query::{Candidate, Query};
@@ -9,6 +11,9 @@ use super::{Hit, Ray, RayKind, World, last_before};
 /// What a ray meets first, before it is looked at: which primitive, how far, and where on it.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Found(pub(super) Option<Candidate>);
+
+/// Materials that the nearest cache does not hold beside all else.
+const MANY: usize = 1 << 8;
 
 impl World {
     /// Finds what a ray meets first, before `t_max`, of what is not hidden from it.
@@ -43,9 +48,27 @@ impl World {
             Some(packet) => {
                 let kind = rays[packet.members.first()].map_or(RayKind::Camera, |ray| ray.kind);
                 let queries = Queries::run(self, packet, &limits, kind);
+                self.fetch_coats(|| packet.members.filter_map(|i| queries.found(i).0.as_ref()));
                 each.for_each(|(i, ray)| tell(i, ray, queries.found(i)));
             }
             None => each.for_each(|(i, ray)| tell(i, ray, &self.find(ray))),
+        }
+    }
+
+    /// Has the materials of what was found brought near all at once, where there are many: each would be waited for. Changes nothing but time.
+    #[inline(always)]
+    fn fetch_coats<'f, F: Iterator<Item = &'f Candidate>>(&self, found: impl Fn() -> F) {
+        let Aggregate::Group(group) = &self.aggregates[0] else { return };
+        if self.coats.len() < MANY {
+            return;
+        }
+        let placed_nowhere = || found().filter(|candidate| candidate.id.instance == 0);
+        placed_nowhere().for_each(|candidate| fetch_entry(&group.material, candidate.id.shape as usize));
+        for candidate in placed_nowhere() {
+            let own = group.material[candidate.id.shape as usize];
+            if own != INHERITED {
+                fetch_entry(&self.coats, own as usize);
+            }
         }
     }
 }
