@@ -150,8 +150,8 @@ impl std::fmt::Debug for Kind {
     }
 }
 
-/// Makes a block's value from what stood between its braces, all checked against the table.
-pub type Build = fn(&mut dyn Context, Block) -> Outcome;
+/// Makes a block's value from what stood between its braces, all checked against the table. What it takes out of the block is its own.
+pub type Build = fn(&mut dyn Context, &mut Block) -> Outcome;
 
 /// What becomes of a block's value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

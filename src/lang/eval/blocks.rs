@@ -10,6 +10,9 @@ use crate::scene::{Figure, Node, RenderSettings, Stance};
 use smallvec::smallvec;
 use std::rc::Rc;
 
+/// Room for more properties than this is given back.
+const ROOM: usize = 64;
+
 impl<'p> Evaluator<'p> {
     pub(super) fn block_item(&mut self, item: &'p BlockItem, out: &mut Produced) -> Outcome<()> {
         let block = &item.block;
@@ -87,11 +90,12 @@ impl<'p> Evaluator<'p> {
 
     fn block_value(&mut self, block: &'p program::Block) -> Outcome {
         let mut out = Produced::new(Around::Braces);
+        out.given = self.spare.pop().unwrap_or_default();
         self.items(&block.body, &mut out);
         if out.failed {
             excuse(block.kind, block.kind_span, &mut out);
         }
-        let made = Block {
+        let mut made = Block {
             kind: block.kind,
             span: block.span,
             kind_span: block.kind_span,
@@ -100,11 +104,21 @@ impl<'p> Evaluator<'p> {
             children: out.nodes,
             poisoned: out.poisoned,
         };
-        self.make(made)
+        let value = self.make(&mut made);
+        self.keep_room(made.given);
+        value
+    }
+
+    /// Keeps the room that a block's properties took for those of the next one.
+    fn keep_room(&mut self, mut given: Vec<Given>) {
+        if given.capacity() <= ROOM {
+            given.clear();
+            self.spare.push(given);
+        }
     }
 
     /// A block's value by its kind, and the guard on what it holds.
-    fn make(&mut self, block: Block) -> Outcome {
+    fn make(&mut self, block: &mut Block) -> Outcome {
         let span = block.span;
         let nested = !block.children.is_empty();
         let value = kinds::make(self, block)?;
@@ -131,7 +145,7 @@ impl<'p> Evaluator<'p> {
     }
 
     fn group(&mut self, out: Produced, span: Span) -> Outcome {
-        self.make(Block {
+        self.make(&mut Block {
             kind: kinds::group(),
             span,
             kind_span: span,

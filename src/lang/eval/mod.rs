@@ -199,6 +199,8 @@ struct Evaluator<'p> {
     run: &'p Run<'p>,
     program: &'p Program,
     stack: Vec<Slot>,
+    /// Room for the properties of blocks, of each that another stands in.
+    spare: Vec<Vec<Given>>,
     base: usize,
     captured: Option<Rc<Captured>>,
     standing: Standing,
@@ -229,6 +231,7 @@ impl<'p> Evaluator<'p> {
             run,
             program: run.program,
             stack: Vec::new(),
+            spare: Vec::new(),
             base: 0,
             captured: None,
             standing,

@@ -99,12 +99,12 @@ pub const SOURCES: [&str; 5] = ["point", "spot", "sun", "area", "sky"];
 const STRENGTHS: [(&str, &[&str]); 3] =
     [("intensity", &["point", "spot"]), ("irradiance", &["sun"]), ("radiance", &["area", "sky"])];
 
-fn light(ctx: &mut dyn Context, block: Block) -> Outcome {
-    let source = the_source(ctx, &block)?;
-    check_belonging(ctx, &block, source)?;
+fn light(ctx: &mut dyn Context, block: &mut Block) -> Outcome {
+    let source = the_source(ctx, block)?;
+    check_belonging(ctx, block, source)?;
     let made = Light {
-        source: make_source(ctx, &block, source)?,
-        falloff: falloff(ctx, &block)?,
+        source: make_source(ctx, block, source)?,
+        falloff: falloff(ctx, block)?,
         shadow: block.flag("shadow").unwrap_or(true),
         samples: block.integer("samples").unwrap_or(DEFAULT_SAMPLES).min(u64::from(u32::MAX)) as u32,
         transform: common::transform_of(ctx, &block.given)?.map(Box::new),

@@ -79,12 +79,12 @@ pub static MATERIAL: Kind = Kind {
     build: Some(material),
 };
 
-fn material(ctx: &mut dyn Context, block: Block) -> Outcome {
-    let layers = layers(&block);
+fn material(ctx: &mut dyn Context, block: &mut Block) -> Outcome {
+    let layers = layers(block);
     let default_diffuse = if block.has("transmit") || block.has("metal") { 0.0 } else { 0.8 };
     let diffuse = block.texture("diffuse").unwrap_or(Texture::number(default_diffuse));
     let material = Material { diffuse, layers, span: block.span };
-    energy::check(ctx, &material, &block);
+    energy::check(ctx, &material, block);
     Ok(Value::Material(Arc::new(material)))
 }
 

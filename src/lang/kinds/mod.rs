@@ -78,8 +78,8 @@ pub fn group() -> &'static Kind {
 }
 
 /// Checks a block against the table and makes its value.
-pub fn make(ctx: &mut dyn Context, mut block: Block) -> Outcome {
-    check::check_block(ctx, &mut block)?;
+pub fn make(ctx: &mut dyn Context, block: &mut Block) -> Outcome {
+    check::check_block(ctx, block)?;
     let build = block.kind.build.expect("every kind of the table is built");
     build(ctx, block)
 }

@@ -58,9 +58,9 @@ pub static MODEL: Kind = Kind {
     build: Some(model),
 };
 
-fn model(ctx: &mut dyn Context, block: Block) -> Outcome {
-    let shape = shape(ctx, &block, None)?;
-    finish(ctx, &block, shape)
+fn model(ctx: &mut dyn Context, block: &mut Block) -> Outcome {
+    let shape = shape(ctx, block, None)?;
+    finish(ctx, block, shape)
 }
 
 /// The model that a block's properties say, or, for those that it does not give, another one. A new `file` replaces all of that.

@@ -50,17 +50,17 @@ pub static GROUP: Kind = Kind {
     own: &[],
     children: true,
     open: false,
-    build: Some(|ctx, mut block| {
+    build: Some(|ctx, block| {
         let children = std::mem::take(&mut block.children);
-        finish(ctx, &block, Shape::Group(children.into()))
+        finish(ctx, block, Shape::Group(children.into()))
     }),
 };
 
-fn mesh(ctx: &mut dyn Context, block: Block) -> Outcome {
+fn mesh(ctx: &mut dyn Context, block: &mut Block) -> Outcome {
     let source = match (block.has("file"), block.has("vertices")) {
-        (true, true) => return Err(conflict(ctx, &block, "file", "vertices")),
-        (true, false) => file_mesh(ctx, &block)?,
-        (false, true) => MeshSource::Inline(inline_mesh(ctx, &block)?),
+        (true, true) => return Err(conflict(ctx, block, "file", "vertices")),
+        (true, false) => file_mesh(ctx, block)?,
+        (false, true) => MeshSource::Inline(inline_mesh(ctx, block)?),
         (false, false) => {
             let said = Diagnostic::new(
                 Code::MissingProperty,
@@ -71,7 +71,7 @@ fn mesh(ctx: &mut dyn Context, block: Block) -> Outcome {
             return Err(ctx.fail(said));
         }
     };
-    finish(ctx, &block, Shape::Mesh(Arc::new(source)))
+    finish(ctx, block, Shape::Mesh(Arc::new(source)))
 }
 
 fn file_mesh(ctx: &mut dyn Context, block: &Block) -> Outcome<MeshSource> {

@@ -58,19 +58,19 @@ pub static CAMERA: Kind = Kind {
     build: Some(camera),
 };
 
-fn camera(ctx: &mut dyn Context, block: Block) -> Outcome {
+fn camera(ctx: &mut dyn Context, block: &mut Block) -> Outcome {
     let eye = block.vector("eye").expect("required");
     let look_at = block.vector("look_at").unwrap_or(DVec3::ZERO);
-    let projection = projection(&block);
+    let projection = projection(block);
     if eye == look_at {
-        return Err(looks_at_itself(ctx, &block));
+        return Err(looks_at_itself(ctx, block));
     }
     let made = Camera {
         label: block.label.as_ref().map(|(name, _)| name.as_str().into()),
         eye,
         look_at,
-        up: up(ctx, &block, look_at - eye)?,
-        fov: fov(ctx, &block, projection)?,
+        up: up(ctx, block, look_at - eye)?,
+        fov: fov(ctx, block, projection)?,
         projection,
         aperture: block.number("aperture").unwrap_or(0.0),
         focus: block.number("focus"),
@@ -221,11 +221,11 @@ pub static RENDER: Kind = Kind {
 /// Most pixels on a side: what picture formats hold.
 const LARGEST_SIDE: f64 = 65_535.0;
 
-fn render(ctx: &mut dyn Context, block: Block) -> Outcome {
+fn render(ctx: &mut dyn Context, block: &mut Block) -> Outcome {
     let settings = RenderSettings {
-        size: size(ctx, &block)?,
+        size: size(ctx, block)?,
         tracer: block.word("tracer").map(tracer),
-        samples: count(ctx, &block, "samples")?,
+        samples: count(ctx, block, "samples")?,
         // More segments than can be counted are without end.
         depth: block.integer("depth").map(|n| n.min(u64::from(u32::MAX)) as u32),
         seed: block.integer("seed"),
@@ -236,7 +236,7 @@ fn render(ctx: &mut dyn Context, block: Block) -> Outcome {
         exposure: block.number("exposure"),
         tonemap: block.word("tonemap").map(tonemap),
         background: block.colour("background"),
-        frames: count(ctx, &block, "frames")?,
+        frames: count(ctx, block, "frames")?,
         fps: block.number("fps"),
         span: Some(block.span),
         size_span: block.has("size").then(|| block.place("size")),

@@ -35,7 +35,7 @@ pub static SPHERE: Kind = solid(
     ],
     |ctx, block| {
         let center = block.vector("center").unwrap_or(DVec3::ZERO);
-        finish(ctx, &block, Shape::Sphere { center, radius: block.number("radius").unwrap_or(1.0) })
+        finish(ctx, block, Shape::Sphere { center, radius: block.number("radius").unwrap_or(1.0) })
     },
 );
 
@@ -78,7 +78,7 @@ pub static DISC: Kind = solid(
             normal: block.vector("normal").unwrap_or(DVec3::Y),
             radius: block.number("radius").unwrap_or(1.0),
         };
-        finish(ctx, &block, Shape::Disc(Box::new(disc)))
+        finish(ctx, block, Shape::Disc(Box::new(disc)))
     },
 );
 
@@ -125,7 +125,7 @@ pub static CYLINDER: Kind = solid(
     ],
     |ctx, block| {
         let r = block.number("radius").unwrap_or(1.0);
-        frustum(ctx, &block, [r, r])
+        frustum(ctx, block, [r, r])
     },
 );
 
@@ -171,7 +171,7 @@ pub static TORUS: Kind = solid(
             axis: block.vector("axis").unwrap_or(DVec3::Y),
             radii: [radii[0], radii[1]],
         };
-        finish(ctx, &block, Shape::Torus(Box::new(torus)))
+        finish(ctx, block, Shape::Torus(Box::new(torus)))
     },
 );
 
@@ -210,15 +210,15 @@ pub fn finish(ctx: &mut dyn Context, block: &Block, shape: Shape) -> Outcome {
     Ok(Value::Object(Arc::new(object)))
 }
 
-fn plane(ctx: &mut dyn Context, block: Block) -> Outcome {
+fn plane(ctx: &mut dyn Context, block: &mut Block) -> Outcome {
     let normal = block.vector("normal").unwrap_or(DVec3::Y);
     let offset = match (block.number("offset"), block.vector("through")) {
-        (Some(_), Some(_)) => return Err(conflict(ctx, &block, "offset", "through")),
+        (Some(_), Some(_)) => return Err(conflict(ctx, block, "offset", "through")),
         (Some(offset), None) => offset,
         (None, Some(p)) => normal.dot(p),
         (None, None) => 0.0,
     };
-    finish(ctx, &block, Shape::Plane { normal, offset })
+    finish(ctx, block, Shape::Plane { normal, offset })
 }
 
 /// Two properties that say the same thing.
@@ -240,7 +240,7 @@ pub fn conflict(
     )
 }
 
-fn rect(ctx: &mut dyn Context, block: Block) -> Outcome {
+fn rect(ctx: &mut dyn Context, block: &mut Block) -> Outcome {
     let edges = block.vectors("edges").expect("required");
     let (a, b) = (edges[0], edges[1]);
     if parallel(a, b) {
@@ -254,7 +254,7 @@ fn rect(ctx: &mut dyn Context, block: Block) -> Outcome {
         ));
     }
     let center = block.vector("center").unwrap_or(DVec3::ZERO);
-    finish(ctx, &block, Shape::Rect(Box::new(Rect { center, a, b })))
+    finish(ctx, block, Shape::Rect(Box::new(Rect { center, a, b })))
 }
 
 /// True where the vectors span no area, up to the rounding of their cross product at the scale of their lengths.
@@ -265,7 +265,7 @@ fn parallel(a: DVec3, b: DVec3) -> bool {
     }
 }
 
-fn axis_box(ctx: &mut dyn Context, block: Block) -> Outcome {
+fn axis_box(ctx: &mut dyn Context, block: &mut Block) -> Outcome {
     let (min, max) = (block.vector("min").expect("required"), block.vector("max").expect("required"));
     let bad: Vec<usize> = (0..3).filter(|i| min[*i] >= max[*i]).collect();
     if let Some(first) = bad.first() {
@@ -293,16 +293,16 @@ fn axis_box(ctx: &mut dyn Context, block: Block) -> Outcome {
             .hint(hint);
         return Err(ctx.fail(said));
     }
-    finish(ctx, &block, Shape::Box(Box::new((min, max))))
+    finish(ctx, block, Shape::Box(Box::new((min, max))))
 }
 
-fn cone(ctx: &mut dyn Context, block: Block) -> Outcome {
+fn cone(ctx: &mut dyn Context, block: &mut Block) -> Outcome {
     let radii = block.numbers("radii").expect("required");
     if radii[0] == 0.0 && radii[1] == 0.0 {
         let hint = "at least one radius must be above 0, as in `radii 0.5, 0`";
         return Err(block.fault(ctx, Code::BadGeometry, "radii", "both radii of this cone are 0", hint));
     }
-    frustum(ctx, &block, [radii[0], radii[1]])
+    frustum(ctx, block, [radii[0], radii[1]])
 }
 
 fn frustum(ctx: &mut dyn Context, block: &Block, radii: [f64; 2]) -> Outcome {
@@ -320,7 +320,7 @@ fn frustum(ctx: &mut dyn Context, block: &Block, radii: [f64; 2]) -> Outcome {
     finish(ctx, block, Shape::Cone(Box::new(Cone { from, to, radii })))
 }
 
-fn triangle(ctx: &mut dyn Context, block: Block) -> Outcome {
+fn triangle(ctx: &mut dyn Context, block: &mut Block) -> Outcome {
     let v = block.vectors("vertices").expect("required");
     if parallel(v[1] - v[0], v[2] - v[0]) {
         let hint = "move a corner off the line through the other two";
@@ -332,5 +332,5 @@ fn triangle(ctx: &mut dyn Context, block: Block) -> Outcome {
         normals: block.vectors("normals").map(|n| [n[0], n[1], n[2]]),
         uvs: block.vectors2("uvs").map(|t| [t[0], t[1], t[2]]),
     };
-    finish(ctx, &block, Shape::Triangle(Box::new(triangle)))
+    finish(ctx, block, Shape::Triangle(Box::new(triangle)))
 }

@@ -71,18 +71,18 @@ pub static SKIN: Kind = Kind {
     build: Some(skin),
 };
 
-fn skin(ctx: &mut dyn Context, block: Block) -> Outcome {
-    let stance = stance(ctx, &block)?;
+fn skin(ctx: &mut dyn Context, block: &mut Block) -> Outcome {
+    let stance = stance(ctx, block)?;
     let surface = block.object("surface").expect("checked to be there");
     if block.has("show") {
-        return finish(ctx, &block, bones::drawn(&stance, block.span));
+        return finish(ctx, block, bones::drawn(&stance, block.span));
     }
     let skeleton = &stance.rig().skeleton;
-    let weights = weights::of(ctx, &block, skeleton.joints().len(), &surface)?;
+    let weights = weights::of(ctx, block, skeleton.joints().len(), &surface)?;
     let making = Making {
         armature: Arc::new(armature(&stance)),
         weights,
-        blend: blend(&block),
+        blend: blend(block),
         tolerance: block.number("tolerance"),
         at: block.place("surface"),
     };

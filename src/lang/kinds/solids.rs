@@ -88,7 +88,7 @@ pub static IMPLICIT: Kind = Kind {
     build: Some(implicit),
 };
 
-fn implicit(ctx: &mut dyn Context, block: Block) -> Outcome {
+fn implicit(ctx: &mut dyn Context, block: &mut Block) -> Outcome {
     let corners = block.vectors("within").expect("checked to be there");
     let within = (corners[0], corners[1]);
     let size = within.1 - within.0;
@@ -102,7 +102,7 @@ fn implicit(ctx: &mut dyn Context, block: Block) -> Outcome {
     let function = ctx.sampled(&f, SampleInput::Point, Gives::Components(&[1]), block.place("f"))?;
     outcome?;
     let gradient = block.number("gradient").map(|bound| (bound, block.place("gradient")));
-    finish(ctx, &block, Shape::Implicit(Arc::new(Implicit { function, within, gradient })))
+    finish(ctx, block, Shape::Implicit(Arc::new(Implicit { function, within, gradient })))
 }
 
 /// The kind of an operation.
@@ -114,11 +114,11 @@ pub fn kind_of(op: CsgOp) -> &'static Kind {
     }
 }
 
-fn build(ctx: &mut dyn Context, mut block: Block, op: CsgOp) -> Outcome {
+fn build(ctx: &mut dyn Context, block: &mut Block, op: CsgOp) -> Outcome {
     let children = std::mem::take(&mut block.children);
     check_solids(ctx, &children)?;
     let inverse = block.flag("inverse").unwrap_or(false);
-    finish(ctx, &block, Shape::Csg(Arc::new(Csg { op, inverse, children: children.into() })))
+    finish(ctx, block, Shape::Csg(Arc::new(Csg { op, inverse, children: children.into() })))
 }
 
 /// Reports all that are no solids, those inside groups too.

@@ -114,13 +114,13 @@ pub static SPLINE: Kind = Kind {
     build: Some(build),
 };
 
-fn build(ctx: &mut dyn Context, block: Block) -> Outcome {
-    let form = the_form(ctx, &block)?;
-    check_belonging(ctx, &block, form)?;
-    match check_dimensions(ctx, &block, form)? {
-        1 => spline::<f64>(ctx, &block, form),
-        2 => spline::<DVec2>(ctx, &block, form),
-        _ => spline::<DVec3>(ctx, &block, form),
+fn build(ctx: &mut dyn Context, block: &mut Block) -> Outcome {
+    let form = the_form(ctx, block)?;
+    check_belonging(ctx, block, form)?;
+    match check_dimensions(ctx, block, form)? {
+        1 => spline::<f64>(ctx, block, form),
+        2 => spline::<DVec2>(ctx, block, form),
+        _ => spline::<DVec3>(ctx, block, form),
     }
 }
 

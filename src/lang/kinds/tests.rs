@@ -28,13 +28,17 @@ fn properties_have_unique_names_and_say_what_they_are() {
 }
 
 mod building {
-    use super::super::{make, with};
+    use super::super::{self as kinds, with};
     use crate::lang::mock::{Mock, block, given, n, span, v, w};
-    use crate::lang::table::Outcome;
+    use crate::lang::table::{Block, Outcome};
     use crate::lang::value::Value;
     use crate::scene::{Fresnel, LightSource, Object, Shape, Texture};
     use glam::DVec3;
     use std::sync::Arc;
+
+    fn make(mock: &mut Mock, mut block: Block) -> Outcome {
+        kinds::make(mock, &mut block)
+    }
 
     fn object(outcome: Outcome) -> Arc<Object> {
         match outcome {

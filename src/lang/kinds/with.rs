@@ -122,7 +122,7 @@ fn rebuild(
             values: values.into_iter().map(|value| (value, place.base)).collect(),
         },
     );
-    let block = Block {
+    let mut block = Block {
         kind,
         span: place.whole,
         kind_span: place.base,
@@ -131,7 +131,7 @@ fn rebuild(
         children: Vec::new(),
         poisoned: Vec::new(),
     };
-    super::make(ctx, block)
+    super::make(ctx, &mut block)
 }
 
 fn to_object(

@@ -91,23 +91,23 @@ pub static TIP: Kind = Kind {
     build: Some(tip),
 };
 
-fn tip(ctx: &mut dyn Context, block: Block) -> Outcome {
-    part(ctx, &block, Sort::Tip)
+fn tip(ctx: &mut dyn Context, block: &mut Block) -> Outcome {
+    part(ctx, block, Sort::Tip)
 }
 
-fn joint(ctx: &mut dyn Context, block: Block) -> Outcome {
-    let freedom = freedom(ctx, &block)?;
-    let rest = rest(ctx, &block, &freedom)?;
-    let limits = limits(ctx, &block, &freedom)?;
-    check_rest(ctx, &block, &rest, &limits)?;
-    let parts = parts(&block);
+fn joint(ctx: &mut dyn Context, block: &mut Block) -> Outcome {
+    let freedom = freedom(ctx, block)?;
+    let rest = rest(ctx, block, &freedom)?;
+    let limits = limits(ctx, block, &freedom)?;
+    check_rest(ctx, block, &rest, &limits)?;
+    let parts = parts(block);
     let depth = 1 + parts.iter().map(|part| part.depth()).max().unwrap_or(0);
     if depth > DEEPEST {
         let message = format!("more than {DEEPEST} joints hang on one another");
         let said = Diagnostic::new(Code::TooDeep, block.kind_span, message);
         return Err(ctx.fail(said.hint("end the function that calls itself earlier")));
     }
-    part(ctx, &block, Sort::Joint { freedom, rest, limits, parts, depth })
+    part(ctx, block, Sort::Joint { freedom, rest, limits, parts, depth })
 }
 
 fn part(ctx: &mut dyn Context, block: &Block, sort: Sort) -> Outcome {

@@ -81,18 +81,18 @@ pub static POSE: Kind = Kind {
     build: Some(pose),
 };
 
-fn pose(ctx: &mut dyn Context, mut block: Block) -> Outcome {
+fn pose(ctx: &mut dyn Context, block: &mut Block) -> Outcome {
     let from = match block.value("of") {
         Some(Value::Skeleton(rig)) => Stance::Rest(rig.clone()),
         Some(Value::Pose(pose)) => Stance::Posed(pose.clone()),
         _ => unreachable!("checked to be a skeleton or a pose"),
     };
-    let mut coordinates = captured(ctx, &block, &from)?;
-    let joints = given_joints(ctx, &mut block, &from.rig().skeleton, &mut coordinates);
-    let asked = reach::asked(ctx, &block, &from.rig().skeleton);
+    let mut coordinates = captured(ctx, block, &from)?;
+    let joints = given_joints(ctx, block, &from.rig().skeleton, &mut coordinates);
+    let asked = reach::asked(ctx, block, &from.rig().skeleton);
     joints?;
     let reached = match asked? {
-        Some(asked) => Some(reach::reach(ctx, &asked, &block, &from.rig().skeleton, &mut coordinates)?),
+        Some(asked) => Some(reach::reach(ctx, &asked, block, &from.rig().skeleton, &mut coordinates)?),
         None => None,
     };
     Ok(Value::Pose(Arc::new(Pose::new(from.rig().clone(), coordinates, reached, block.span))))

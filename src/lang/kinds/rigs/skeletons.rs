@@ -37,11 +37,11 @@ pub static SKELETON: Kind = Kind {
 /// Bytes of a file that count as one element against the guard of lists: what its numbers take once read.
 const BYTES_AN_ELEMENT: usize = 8;
 
-fn skeleton(ctx: &mut dyn Context, block: Block) -> Outcome {
+fn skeleton(ctx: &mut dyn Context, block: &mut Block) -> Outcome {
     let rig = match (block.has("file"), block.has("joint")) {
-        (true, true) => return Err(conflict(ctx, &block, "file", "joint")),
-        (true, false) => captured(ctx, &block)?,
-        (false, true) => Arc::new(Rig::new(assembled(ctx, &block)?, None, block.span)),
+        (true, true) => return Err(conflict(ctx, block, "file", "joint")),
+        (true, false) => captured(ctx, block)?,
+        (false, true) => Arc::new(Rig::new(assembled(ctx, block)?, None, block.span)),
         (false, false) => {
             let said = Diagnostic::new(Code::MissingProperty, block.kind_span, "a `skeleton` needs a joint")
                 .hint("write `skeleton arm { joint shoulder { hinge z } }`, or `skeleton man { file \"walk.bvh\" }`");

@@ -56,16 +56,16 @@ pub static PATCH: Kind = Kind {
     build: Some(patch),
 };
 
-fn patch(ctx: &mut dyn Context, block: Block) -> Outcome {
+fn patch(ctx: &mut dyn Context, block: &mut Block) -> Outcome {
     let source = PatchSource {
-        net: net(ctx, &block)?,
+        net: net(ctx, block)?,
         method: block.word("method").map(|word| match word {
             "direct" => PatchMethod::Direct,
             _ => PatchMethod::Tessellated,
         }),
         tolerance: block.number("tolerance"),
     };
-    finish(ctx, &block, Shape::Surface(Arc::new(Surface::Patch(source))))
+    finish(ctx, block, Shape::Surface(Arc::new(Surface::Patch(source))))
 }
 
 fn net(ctx: &mut dyn Context, block: &Block) -> Outcome<PatchNet> {

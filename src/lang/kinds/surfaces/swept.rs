@@ -113,9 +113,9 @@ fn plane(block: &Block, name: &str) -> Arc<Measured<DVec2>> {
     }
 }
 
-fn tube(ctx: &mut dyn Context, block: Block) -> Outcome {
-    let along = space(&block, "along").expect("checked to be a curve of 3-vectors");
-    let radius = radius(ctx, &block, along.domain())?;
+fn tube(ctx: &mut dyn Context, block: &mut Block) -> Outcome {
+    let along = space(block, "along").expect("checked to be a curve of 3-vectors");
+    let radius = radius(ctx, block, along.domain())?;
     let caps = match block.word("caps") {
         Some("flat") => Caps::Flat,
         Some("open") => Caps::Open,
@@ -137,7 +137,7 @@ fn tube(ctx: &mut dyn Context, block: Block) -> Outcome {
             hint,
         ));
     }
-    finish(ctx, &block, Shape::Surface(Arc::new(Surface::Tube(TubeSource { along, radius, caps }))))
+    finish(ctx, block, Shape::Surface(Arc::new(Surface::Tube(TubeSource { along, radius, caps }))))
 }
 
 fn radius(ctx: &mut dyn Context, block: &Block, (start, end): (f64, f64)) -> Outcome<Radius> {
@@ -164,8 +164,8 @@ fn radius(ctx: &mut dyn Context, block: &Block, (start, end): (f64, f64)) -> Out
     }
 }
 
-fn lathe(ctx: &mut dyn Context, block: Block) -> Outcome {
-    let (profile, angle) = (plane(&block, "profile"), block.number("angle").unwrap_or(360.0));
+fn lathe(ctx: &mut dyn Context, block: &mut Block) -> Outcome {
+    let (profile, angle) = (plane(block, "profile"), block.number("angle").unwrap_or(360.0));
     if angle == 0.0 {
         let hint = "leave `angle` away to go all the way round";
         return Err(block.fault(
@@ -187,11 +187,11 @@ fn lathe(ctx: &mut dyn Context, block: Block) -> Outcome {
         let message = format!("this lathe cannot be made: {error}");
         return Err(block.fault(ctx, Code::BadGeometry, "profile", message, hint));
     }
-    finish(ctx, &block, Shape::Surface(Arc::new(Surface::Lathe(LatheSource { profile, angle }))))
+    finish(ctx, block, Shape::Surface(Arc::new(Surface::Lathe(LatheSource { profile, angle }))))
 }
 
-fn extrude(ctx: &mut dyn Context, block: Block) -> Outcome {
-    let outline = plane(&block, "outline");
+fn extrude(ctx: &mut dyn Context, block: &mut Block) -> Outcome {
+    let outline = plane(block, "outline");
     if let Err(error) = Outline::new(of_measured(&outline)) {
         let hint = match error {
             OutlineError::Open { .. } => "add `closed` to the spline, or end it where it starts",
@@ -201,8 +201,8 @@ fn extrude(ctx: &mut dyn Context, block: Block) -> Outcome {
         let message = format!("this extrude cannot be made: {error}");
         return Err(block.fault(ctx, Code::BadGeometry, "outline", message, hint));
     }
-    let along = match space(&block, "along") {
-        Some(path) => way(ctx, &block, path)?,
+    let along = match space(block, "along") {
+        Some(path) => way(ctx, block, path)?,
         None => Along::Vector(block.vector("along").expect("required")),
     };
     if let Along::Vector(DVec3::ZERO) = along {
@@ -215,7 +215,7 @@ fn extrude(ctx: &mut dyn Context, block: Block) -> Outcome {
             hint,
         ));
     }
-    finish(ctx, &block, Shape::Surface(Arc::new(Surface::Extrude(ExtrudeSource { outline, along }))))
+    finish(ctx, block, Shape::Surface(Arc::new(Surface::Extrude(ExtrudeSource { outline, along }))))
 }
 
 fn way(ctx: &mut dyn Context, block: &Block, path: Arc<Measured<DVec3>>) -> Outcome<Along> {
