@@ -268,7 +268,7 @@ impl Film {
 }
 
 /// The samples of one pixel on the way to their mean.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug)]
 pub struct PixelSum {
     sum: Rgb,
     /// How many were finite.
@@ -276,6 +276,9 @@ pub struct PixelSum {
 }
 
 impl PixelSum {
+    /// No sample.
+    pub const NOTHING: PixelSum = PixelSum { sum: Rgb::ZERO, count: 0 };
+
     /// Takes a sample. One that is not finite is left out, so that it cannot spoil its pixel: false for such a one.
     #[inline]
     pub fn add(&mut self, radiance: Rgb) -> bool {
@@ -299,7 +302,7 @@ mod tests {
 
     #[test]
     fn many_equal_samples_keep_their_mean() {
-        let mut pixel = PixelSum::default();
+        let mut pixel = PixelSum::NOTHING;
         assert!((0..1 << 22).all(|_| pixel.add(Rgb::splat(0.1))));
         assert!((pixel.mean() - Rgb::splat(0.1)).abs().max_element() < 1e-10);
     }
@@ -322,7 +325,7 @@ mod tests {
 
     #[test]
     fn a_sample_that_is_not_finite_is_told_and_left_out() {
-        let mut pixel = PixelSum::default();
+        let mut pixel = PixelSum::NOTHING;
         let taken = [1.0, f64::NAN, 3.0, f64::INFINITY].map(|x| pixel.add(Rgb::splat(x)));
         assert_eq!((pixel.mean(), taken), (Rgb::splat(2.0), [true, false, true, false]));
     }

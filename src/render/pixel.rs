@@ -37,13 +37,23 @@ pub struct Pixel {
 }
 
 impl Pixel {
+    /// A constant, so that it is written number by number: put together and copied as a whole it waits for its parts to come to memory.
+    const BLANK: Pixel = Pixel {
+        turn: Turn::new([0, 0], 0),
+        sum: PixelSum::NOTHING,
+        enough: false,
+        blocks: None,
+        emission_rays: None,
+        undefined: None,
+        features: None,
+    };
+
     /// The pixel in a column and row of the whole picture, without a sample.
     #[inline]
     pub fn new(place: [u32; 2], settings: &ResolvedSettings) -> Pixel {
         let features = (!settings.kept().is_empty()).then(Box::default);
         let blocks = settings.error.map(|_| Box::default());
-        let (turn, sum) = (Turn::new(place, 0), PixelSum::default());
-        Pixel { turn, sum, enough: false, blocks, emission_rays: None, undefined: None, features }
+        Pixel { turn: Turn::new(place, 0), blocks, features, ..Pixel::BLANK }
     }
 
     /// Its column and row in the whole picture.

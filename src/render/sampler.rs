@@ -48,8 +48,8 @@ pub struct Turn {
 impl Turn {
     /// A sample of the pixel in a column and row of the whole picture, from its first number on.
     #[inline]
-    pub fn new([x, y]: [u32; 2], sample: u32) -> Turn {
-        Turn { place: u64::from(y) << 32 | u64::from(x), pixel: None, sample, dimension: 0 }
+    pub const fn new([x, y]: [u32; 2], sample: u32) -> Turn {
+        Turn { place: (y as u64) << 32 | x as u64, pixel: None, sample, dimension: 0 }
     }
 
     /// The pixel's column and row.
