@@ -6,8 +6,8 @@ mod fetch;
 mod packet;
 mod wide;
 
-use fetch::fetch;
 pub(in crate::world) use fetch::fetch_entry;
+use fetch::{fetch, nowhere};
 pub(in crate::world) use packet::Limits;
 
 use super::{Child, Node, Tree, WIDTH};
@@ -139,7 +139,7 @@ impl Tree {
         mut leaf: impl FnMut(Range<usize>, f64) -> f64,
     ) {
         if let Some(t_max) = self.offer_loose(t_max, &mut leaf) {
-            wide::walk(self, [origin, direction], t_max, &mut leaf);
+            wide::walk(self, [origin, direction], t_max, (&mut leaf, nowhere(&self.nodes)));
         }
     }
 
@@ -154,7 +154,7 @@ impl Tree {
     ) {
         let mut loose = |range, t_max| if leaf(range) { t_max } else { -1.0 };
         if let Some(t_max) = self.offer_loose(t_max, &mut loose) {
-            wide::walk_any(self, [origin, direction], t_max, &mut leaf);
+            wide::walk_any(self, [origin, direction], t_max, (&mut leaf, nowhere(&self.nodes)));
         }
     }
 
@@ -174,17 +174,18 @@ impl Tree {
     }
 }
 
-/// The traversal from where the ray enters. `meets` tests a node's children against a limit, as `limit_of` makes it ready.
+/// The traversal from where the ray enters. `meets` tests a node's children against a limit, as `limit_of` makes it ready; `ahead` says where the items from a
+/// position on lie, for those that are visited later.
 #[inline(always)]
 fn walk<L: Copy>(
     tree: &Tree,
     entry: Entry,
     mut t_max: f64,
     (limit_of, meets): (impl Fn(f32) -> L, impl Fn(&Node, L) -> Met),
-    leaf: &mut impl FnMut(Range<usize>, f64) -> f64,
+    (leaf, ahead): (&mut impl FnMut(Range<usize>, f64) -> f64, impl Fn(usize) -> *const i8),
 ) {
     let nodes = &tree.nodes[..];
-    let fetch = |child: Child| fetch(nodes, child);
+    let fetch = |child: Child| fetch(nodes, child, &ahead);
     let limits = |t: f64| {
         let limit = entry.limit(t);
         (limit_of(limit), last_within(limit))
@@ -225,7 +226,7 @@ fn walk_any<L: Copy>(
     entry: Entry,
     t_max: f64,
     (limit_of, meets): (impl Fn(f32) -> L, impl Fn(&Node, L) -> Met),
-    leaf: &mut impl FnMut(Range<usize>) -> bool,
+    (leaf, ahead): (&mut impl FnMut(Range<usize>) -> bool, impl Fn(usize) -> *const i8),
 ) {
     let nodes = &tree.nodes[..];
     let limit = limit_of(entry.limit(t_max));
@@ -239,7 +240,7 @@ fn walk_any<L: Copy>(
             child = node.children[take(&mut met)];
             while met != 0 {
                 let waiting = node.children[take(&mut met)];
-                fetch(nodes, waiting);
+                fetch(nodes, waiting, &ahead);
                 stack.push(waiting);
             }
         } else {

@@ -2,6 +2,7 @@
 //! instructions do, so that all count alike.
 
 use super::entry::Entry;
+use super::fetch::nowhere;
 use super::wide::meets_fused;
 use super::{Met, walk, walk_any};
 use crate::world::bvh::{Node, Tree};
@@ -20,7 +21,7 @@ impl Tree {
     ) -> u64 {
         let Some(t_max) = self.offer_loose(t_max, &mut leaf) else { return 0 };
         self.counted([origin, direction], t_max, |entry, meets| {
-            walk(self, entry, t_max, (|limit| limit, meets), &mut leaf)
+            walk(self, entry, t_max, (|limit| limit, meets), (&mut leaf, nowhere(&self.nodes)))
         })
     }
 
@@ -35,7 +36,7 @@ impl Tree {
         let mut loose = |range, t_max| if leaf(range) { t_max } else { -1.0 };
         let Some(t_max) = self.offer_loose(t_max, &mut loose) else { return 0 };
         self.counted([origin, direction], t_max, |entry, meets| {
-            walk_any(self, entry, t_max, (|limit| limit, meets), &mut leaf);
+            walk_any(self, entry, t_max, (|limit| limit, meets), (&mut leaf, nowhere(&self.nodes)));
         })
     }
 

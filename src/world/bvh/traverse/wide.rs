@@ -14,7 +14,7 @@ pub(super) fn walk(
     tree: &Tree,
     ray: [&DVec3; 2],
     t_max: f64,
-    leaf: &mut impl FnMut(Range<usize>, f64) -> f64,
+    leaf: (&mut impl FnMut(Range<usize>, f64) -> f64, impl Fn(usize) -> *const i8),
 ) {
     #[cfg(target_arch = "x86_64")]
     if crate::math::vectors::has_v3() {
@@ -36,7 +36,7 @@ pub(super) fn walk_any(
     tree: &Tree,
     ray: [&DVec3; 2],
     t_max: f64,
-    leaf: &mut impl FnMut(Range<usize>) -> bool,
+    leaf: (&mut impl FnMut(Range<usize>) -> bool, impl Fn(usize) -> *const i8),
 ) {
     #[cfg(target_arch = "x86_64")]
     if crate::math::vectors::has_v3() {
@@ -90,7 +90,7 @@ mod x86 {
 
     impl Tree {
         /// [`Tree::traverse`] of a tree that is [whole](Tree::is_whole), for callers that are compiled for these instructions themselves: `leaf` becomes a
-        /// part of it, and what both need stays in registers.
+        /// part of it, and what both need stays in registers. `ahead` says where the items from a position on lie.
         #[target_feature(enable = "avx2,bmi1,bmi2,fma")]
         #[inline]
         pub(in crate::world) fn traverse_v3(
@@ -98,10 +98,10 @@ mod x86 {
             origin: DVec3,
             direction: DVec3,
             t_max: f64,
-            mut leaf: impl FnMut(Range<usize>, f64) -> f64,
+            (mut leaf, ahead): (impl FnMut(Range<usize>, f64) -> f64, impl Fn(usize) -> *const i8),
         ) {
             if t_max >= 0.0 {
-                walk_v3(self, [origin, direction], t_max, &mut leaf);
+                walk_v3(self, [origin, direction], t_max, (&mut leaf, ahead));
             }
         }
 
@@ -113,10 +113,10 @@ mod x86 {
             origin: DVec3,
             direction: DVec3,
             t_max: f64,
-            mut leaf: impl FnMut(Range<usize>) -> bool,
+            (mut leaf, ahead): (impl FnMut(Range<usize>) -> bool, impl Fn(usize) -> *const i8),
         ) {
             if t_max >= 0.0 {
-                walk_any_v3(self, [origin, direction], t_max, &mut leaf);
+                walk_any_v3(self, [origin, direction], t_max, (&mut leaf, ahead));
             }
         }
     }
@@ -133,7 +133,7 @@ mod x86 {
         along_y: f64,
         along_z: f64,
         t_max: f64,
-        leaf: &mut impl FnMut(Range<usize>, f64) -> f64,
+        leaf: (&mut impl FnMut(Range<usize>, f64) -> f64, impl Fn(usize) -> *const i8),
     ) {
         let ray = [DVec3::new(x, y, z), DVec3::new(along_x, along_y, along_z)];
         walk_v3(tree, ray, t_max, leaf);
@@ -151,7 +151,7 @@ mod x86 {
         along_y: f64,
         along_z: f64,
         t_max: f64,
-        leaf: &mut impl FnMut(Range<usize>) -> bool,
+        leaf: (&mut impl FnMut(Range<usize>) -> bool, impl Fn(usize) -> *const i8),
     ) {
         let ray = [DVec3::new(x, y, z), DVec3::new(along_x, along_y, along_z)];
         walk_any_v3(tree, ray, t_max, leaf);
@@ -159,7 +159,12 @@ mod x86 {
 
     #[target_feature(enable = "avx2,bmi1,bmi2,fma")]
     #[inline]
-    fn walk_v3(tree: &Tree, ray: [DVec3; 2], t_max: f64, leaf: &mut impl FnMut(Range<usize>, f64) -> f64) {
+    fn walk_v3(
+        tree: &Tree,
+        ray: [DVec3; 2],
+        t_max: f64,
+        leaf: (&mut impl FnMut(Range<usize>, f64) -> f64, impl Fn(usize) -> *const i8),
+    ) {
         let Some((entry, narrow)) = entered(tree, ray, t_max) else { return };
         let limit_of = |limit| _mm256_castps_si256(_mm256_set1_ps(limit));
         super::super::walk(tree, entry, t_max, (limit_of, |node, limit| narrow.meets(node, limit)), leaf);
@@ -167,7 +172,12 @@ mod x86 {
 
     #[target_feature(enable = "avx2,bmi1,bmi2,fma")]
     #[inline]
-    fn walk_any_v3(tree: &Tree, ray: [DVec3; 2], t_max: f64, leaf: &mut impl FnMut(Range<usize>) -> bool) {
+    fn walk_any_v3(
+        tree: &Tree,
+        ray: [DVec3; 2],
+        t_max: f64,
+        leaf: (&mut impl FnMut(Range<usize>) -> bool, impl Fn(usize) -> *const i8),
+    ) {
         let Some((entry, narrow)) = entered(tree, ray, t_max) else { return };
         let limit_of = |limit| _mm256_castps_si256(_mm256_set1_ps(limit));
         super::super::walk_any(tree, entry, t_max, (limit_of, |node, limit| narrow.meets(node, limit)), leaf);
@@ -261,6 +271,7 @@ mod x86 {
 
 #[cfg(test)]
 mod tests {
+    use super::super::fetch::nowhere;
     use super::*;
     use crate::math::Aabb;
 
@@ -283,9 +294,16 @@ mod tests {
             let mut to_plain = |range, t_max| noted(&mut by_plain, range, t_max);
             if let Some((entry, narrow)) = Entry::entered(&tree, [&origin, &direction], 1e3) {
                 let meets = |node: &Node, limit| meets_fused(&narrow, node, limit);
-                super::super::walk(&tree, entry, 1e3, (|limit| limit, meets), &mut to_plain);
+                super::super::walk(
+                    &tree,
+                    entry,
+                    1e3,
+                    (|limit| limit, meets),
+                    (&mut to_plain, nowhere(&tree.nodes)),
+                );
             }
-            walk(&tree, [&origin, &direction], 1e3, &mut |range, t_max| noted(&mut by_wide, range, t_max));
+            let mut to_wide = |range, t_max| noted(&mut by_wide, range, t_max);
+            walk(&tree, [&origin, &direction], 1e3, (&mut to_wide, nowhere(&tree.nodes)));
             n_offered += by_plain.len();
             assert_eq!(by_wide, by_plain, "ray {i}");
         }

@@ -3,7 +3,7 @@
 //! methods for entire ray packets*, 2006), and those that it meets against each ray.
 
 use super::super::entry::{Entry, LEAST, NEAR, Rows, STEPS, rows_of};
-use super::super::fetch::fetch;
+use super::super::fetch::{fetch, nowhere};
 use super::super::{Child, Node, Tree, WIDTH, take};
 use super::{BLOCKS, LANES, Limits};
 use crate::math::vectors::lanes::{load_8, narrow_8, store_8};
@@ -148,7 +148,7 @@ impl Framed {
                     let members = at.members.among(self.who_meets(&from_planes, slot, limits));
                     if !members.is_empty() {
                         let child = node.children[slot];
-                        fetch(nodes, child);
+                        fetch(nodes, child, nowhere(nodes));
                         stack.push_above(bottom, Pending { near: near[slot], child, members });
                     }
                 }

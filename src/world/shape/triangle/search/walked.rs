@@ -14,7 +14,7 @@ pub(super) trait Walked {
     const ANYWHERE: bool;
 
     /// Offers every range that the ray may meet within the limit of what was found; any, in no order, or near ones first. `look` says whether to go on,
-    /// which matters where any will do.
+    /// which matters where any will do; `ahead` where what is looked at from a position on lies.
     ///
     /// # Safety
     ///
@@ -24,6 +24,7 @@ pub(super) trait Walked {
         ray: &LocalRay,
         found: &mut Found,
         look: impl Fn(&mut Found, Range<usize>) -> bool,
+        ahead: impl Fn(usize) -> *const i8,
     );
 }
 
@@ -39,15 +40,17 @@ impl Walked for bvh::Tree {
         ray: &LocalRay,
         found: &mut Found,
         look: impl Fn(&mut Found, Range<usize>) -> bool,
+        ahead: impl Fn(usize) -> *const i8,
     ) {
         let (LocalRay { origin, direction }, limit) = (*ray, found.limit);
         if ANY {
-            self.traverse_any_v3(origin, direction, limit, |range| look(found, range));
+            self.traverse_any_v3(origin, direction, limit, (|range| look(found, range), ahead));
         } else {
-            self.traverse_v3(origin, direction, limit, |range, _| {
+            let nearest = |range, _| {
                 look(found, range);
                 found.limit
-            });
+            };
+            self.traverse_v3(origin, direction, limit, (nearest, ahead));
         }
     }
 }
@@ -63,6 +66,7 @@ impl Walked for kdtree::Tree {
         ray: &LocalRay,
         found: &mut Found,
         look: impl Fn(&mut Found, Range<usize>) -> bool,
+        _: impl Fn(usize) -> *const i8,
     ) {
         let (LocalRay { origin, direction }, limit) = (*ray, found.limit);
         self.traverse_counting(
@@ -89,6 +93,7 @@ impl Walked for Range<usize> {
         _: &LocalRay,
         found: &mut Found,
         look: impl Fn(&mut Found, Range<usize>) -> bool,
+        _: impl Fn(usize) -> *const i8,
     ) {
         look(found, self.clone());
     }

@@ -157,11 +157,12 @@ mod x86 {
             }
             true
         };
+        let ahead = |position: usize| fours.as_ptr().wrapping_add(position / AT_ONCE).cast();
         let mut found = Found::nothing(limit);
         // SAFETY: this function is compiled for the same instructions.
         #[allow(unsafe_code, reason = "a trait has no other functions for some processors")]
         unsafe {
-            tree.walk::<ANY>(ray, &mut found, look);
+            tree.walk::<ANY>(ray, &mut found, look, ahead);
         }
         found
     }
