@@ -531,3 +531,36 @@ fn plain(value: &Value) -> String {
         _ => "…".into(),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::lang::mock::{Mock, n, span, v};
+
+    #[test]
+    fn what_stays_is_what_would_be_made_of_it() {
+        let numbers =
+            [-2.0, -0.0, 0.0, 1e-300, 0.5, 1.0, 7.0, 1e300, f64::INFINITY, f64::NEG_INFINITY, f64::NAN];
+        let vectors = numbers.map(|x| v(0.25, x, 1.0));
+        let values: Vec<Value> = numbers.map(n).into_iter().chain(vectors).collect();
+        let bounds = [(f64::MIN, f64::MAX), (0.0, 1.0), (0.5, 7.0), (-2.0, 0.0)];
+        let kinds = bounds.map(|(min, max)| Type::Number { min, max }).into_iter().chain([
+            Type::Positive,
+            Type::Vector3,
+            Type::Texture,
+            Type::Colour,
+        ]);
+        let mut n_stay = 0;
+        for kind in kinds {
+            for value in &values {
+                let stays = stays(kind, value);
+                let made = fits(&Mock::default(), kind, value)
+                    .then(|| coerce(&mut Mock::default(), kind, value, span(0)));
+                let is_same = matches!(&made, Some(Ok(made)) if shown(made) == shown(value));
+                assert_eq!(stays, is_same, "{kind:?}: {value:?} becomes {:?}", made.and_then(Result::ok));
+                n_stay += usize::from(stays);
+            }
+        }
+        assert!(n_stay > 40, "{n_stay}");
+    }
+}
