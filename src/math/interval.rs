@@ -2,11 +2,11 @@
 //!
 //! The hardware rounds to nearest, so an end is moved outward by one step of the floating-point grid; functions of
 //! [`super::elementary`] are within 1 ulp of the truth and are moved by two. An operation outside its domain gives the
-//! part of its range that is defined and says so by [`Interval::partial`]; where nothing is defined, [`Interval::EMPTY`].
+//! part of its range that is defined and says so by [`Interval::gaps`]; where nothing is defined, [`Interval::EMPTY`].
 
 use super::elementary::{cos, exp, ln, powf, sin};
 use std::f64::consts::{FRAC_PI_2, PI};
-use std::ops::{Add, Div, Mul, Neg, Sub};
+use std::ops::{Add, BitOr, Div, Mul, Neg, Sub};
 
 /// A closed interval `lo … hi`; empty where `lo > hi`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -15,8 +15,51 @@ pub struct Interval {
     pub lo: f64,
     /// Upper end.
     pub hi: f64,
-    /// The function was undefined, or jumped, somewhere in the arguments.
-    pub partial: bool,
+    /// Whether the function was undefined, or jumped, somewhere in the arguments.
+    pub gaps: Gaps,
+}
+
+/// What a function does somewhere in its arguments beside running on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Gaps(u8);
+
+impl Gaps {
+    /// Nothing.
+    pub const NONE: Gaps = Gaps(0);
+    /// It jumps, between values that it is known to have there.
+    pub const JUMPS: Gaps = Gaps(1);
+    /// It is undefined.
+    pub const UNDEFINED: Gaps = Gaps(2);
+    /// Both.
+    pub const ANY: Gaps = Gaps(3);
+
+    /// Jumps, if it does.
+    pub fn jumping(jumps: bool) -> Gaps {
+        if jumps { Gaps::JUMPS } else { Gaps::NONE }
+    }
+
+    /// Undefined, if it is.
+    pub fn undefined(undefined: bool) -> Gaps {
+        if undefined { Gaps::UNDEFINED } else { Gaps::NONE }
+    }
+
+    /// True where there may be one of either kind.
+    pub fn are_there(self) -> bool {
+        self != Gaps::NONE
+    }
+
+    /// True where it may be undefined.
+    pub fn are_undefined(self) -> bool {
+        self.0 & Gaps::UNDEFINED.0 != 0
+    }
+}
+
+impl BitOr for Gaps {
+    type Output = Gaps;
+
+    fn bitor(self, other: Gaps) -> Gaps {
+        Gaps(self.0 | other.0)
+    }
 }
 
 /// One step of the floating-point grid down; −∞ stays.
@@ -46,13 +89,13 @@ fn exact_product(a: f64, b: f64) -> Option<f64> {
 
 impl Interval {
     /// No value at all.
-    pub const EMPTY: Interval = Interval { lo: f64::INFINITY, hi: f64::NEG_INFINITY, partial: true };
+    pub const EMPTY: Interval = Interval { lo: f64::INFINITY, hi: f64::NEG_INFINITY, gaps: Gaps::UNDEFINED };
     /// Any number.
-    pub const WHOLE: Interval = Interval { lo: f64::NEG_INFINITY, hi: f64::INFINITY, partial: false };
+    pub const WHOLE: Interval = Interval { lo: f64::NEG_INFINITY, hi: f64::INFINITY, gaps: Gaps::NONE };
 
     /// `lo … hi`, exactly.
     pub const fn new(lo: f64, hi: f64) -> Interval {
-        Interval { lo, hi, partial: false }
+        Interval { lo, hi, gaps: Gaps::NONE }
     }
 
     /// A single number.
@@ -64,7 +107,7 @@ impl Interval {
     fn exactly(self, b: Interval, operation: fn(f64, f64) -> Option<f64>) -> Option<Interval> {
         let are_single = self.lo == self.hi && b.lo == b.hi;
         let x = are_single.then(|| operation(self.lo, b.lo))??;
-        Some(Interval::point(x).with_partial(self.partial || b.partial))
+        Some(Interval::point(x).with_gaps(self.gaps | b.gaps))
     }
 
     /// True for no value at all (or NaN ends).
@@ -90,33 +133,29 @@ impl Interval {
     /// The smallest interval around both.
     #[must_use]
     pub fn hull(self, other: Interval) -> Interval {
-        let partial = self.partial || other.partial;
+        let gaps = self.gaps | other.gaps;
         match (self.is_empty(), other.is_empty()) {
-            (true, _) => Interval { partial, ..other },
-            (_, true) => Interval { partial, ..self },
-            _ => Interval { lo: self.lo.min(other.lo), hi: self.hi.max(other.hi), partial },
+            (true, _) => Interval { gaps, ..other },
+            (_, true) => Interval { gaps, ..self },
+            _ => Interval { lo: self.lo.min(other.lo), hi: self.hi.max(other.hi), gaps },
         }
     }
 
     /// What both hold.
     #[must_use]
     pub fn intersect(self, other: Interval) -> Interval {
-        Interval {
-            lo: self.lo.max(other.lo),
-            hi: self.hi.min(other.hi),
-            partial: self.partial || other.partial,
-        }
+        Interval { lo: self.lo.max(other.lo), hi: self.hi.min(other.hi), gaps: self.gaps | other.gaps }
     }
 
-    /// The same values, known to be undefined somewhere.
+    /// The same values, with more gaps.
     #[must_use]
-    pub fn with_partial(self, partial: bool) -> Interval {
-        Interval { partial: self.partial || partial, ..self }
+    pub fn with_gaps(self, gaps: Gaps) -> Interval {
+        Interval { gaps: self.gaps | gaps, ..self }
     }
 
     /// Ends moved outward by two steps, for functions within 1 ulp.
-    fn outward(lo: f64, hi: f64, partial: bool) -> Interval {
-        Interval { lo: down(down(lo)), hi: up(up(hi)), partial }
+    fn outward(lo: f64, hi: f64, gaps: Gaps) -> Interval {
+        Interval { lo: down(down(lo)), hi: up(up(hi)), gaps }
     }
 
     /// |x|.
@@ -127,7 +166,7 @@ impl Interval {
         } else if self.hi <= 0.0 {
             -self
         } else {
-            Interval { lo: 0.0, hi: self.hi.max(-self.lo), partial: self.partial }
+            Interval { lo: 0.0, hi: self.hi.max(-self.lo), gaps: self.gaps }
         }
     }
 
@@ -138,7 +177,7 @@ impl Interval {
         if let Some(exact) = a.exactly(a, exact_product) {
             return exact;
         }
-        Interval { lo: down(a.lo * a.lo).max(0.0), hi: up(a.hi * a.hi), partial: self.partial }
+        Interval { lo: down(a.lo * a.lo).max(0.0), hi: up(a.hi * a.hi), gaps: self.gaps }
     }
 
     /// √x.
@@ -148,13 +187,13 @@ impl Interval {
             return Interval::EMPTY;
         }
         let lo = if self.lo <= 0.0 { 0.0 } else { down(self.lo.sqrt()).max(0.0) };
-        Interval { lo, hi: up(self.hi.sqrt()), partial: self.partial || self.lo < 0.0 }
+        Interval { lo, hi: up(self.hi.sqrt()), gaps: self.gaps | Gaps::undefined(self.lo < 0.0) }
     }
 
     /// eˣ.
     #[must_use]
     pub fn exp(self) -> Interval {
-        let wide = Interval::outward(exp(self.lo), exp(self.hi), self.partial);
+        let wide = Interval::outward(exp(self.lo), exp(self.hi), self.gaps);
         Interval { lo: wide.lo.max(0.0), ..wide }
     }
 
@@ -165,19 +204,19 @@ impl Interval {
             return Interval::EMPTY;
         }
         let lo = if self.lo <= 0.0 { f64::NEG_INFINITY } else { ln(self.lo) };
-        Interval::outward(lo, ln(self.hi), self.partial || self.lo <= 0.0)
+        Interval::outward(lo, ln(self.hi), self.gaps | Gaps::undefined(self.lo <= 0.0))
     }
 
     /// A function that grows everywhere and is within 1 ulp.
     #[must_use]
     pub fn monotone(self, f: fn(f64) -> f64) -> Interval {
-        Interval::outward(f(self.lo), f(self.hi), self.partial)
+        Interval::outward(f(self.lo), f(self.hi), self.gaps)
     }
 
     /// Sine of radians.
     #[must_use]
     pub fn sin(self) -> Interval {
-        (self - Interval { lo: down(FRAC_PI_2), hi: up(FRAC_PI_2), partial: false }).cos_like(self, sin)
+        (self - Interval { lo: down(FRAC_PI_2), hi: up(FRAC_PI_2), gaps: Gaps::NONE }).cos_like(self, sin)
     }
 
     /// Cosine of radians.
@@ -194,14 +233,14 @@ impl Interval {
             return Interval::EMPTY;
         }
         if !(self.width() < 2.0 * PI) || self.lo.abs().max(self.hi.abs()) > LARGE {
-            return Interval { lo: -1.0, hi: 1.0, partial: self.partial };
+            return Interval { lo: -1.0, hi: 1.0, gaps: self.gaps };
         }
         // Multiples of π inside, tested with ends moved outward by what k·π is off: a crest too many is only loose.
         let slack = (self.lo.abs().max(self.hi.abs()) + 1.0) * 4.0 * f64::EPSILON;
         let first = ((self.lo - slack) / PI).ceil();
         let last = ((self.hi + slack) / PI).floor();
         let (a, b) = (f(argument.lo), f(argument.hi));
-        let mut range = Interval::outward(a.min(b), a.max(b), self.partial);
+        let mut range = Interval::outward(a.min(b), a.max(b), self.gaps);
         let mut k = first;
         while k <= last {
             if k.rem_euclid(2.0) == 0.0 {
@@ -211,7 +250,7 @@ impl Interval {
             }
             k += 1.0;
         }
-        Interval { lo: range.lo.max(-1.0), hi: range.hi.min(1.0), partial: self.partial }
+        Interval { lo: range.lo.max(-1.0), hi: range.hi.min(1.0), gaps: self.gaps }
     }
 
     /// Tangent of radians; everything where a pole may lie inside.
@@ -224,13 +263,13 @@ impl Interval {
     #[must_use]
     pub fn powi(self, n: i32) -> Interval {
         match n {
-            0 => Interval::point(1.0).with_partial(self.partial),
+            0 => Interval::point(1.0).with_gaps(self.gaps),
             1 => self,
             2 => self.square(),
             n if n < 0 => Interval::point(1.0) / self.powi(-n),
             n => {
                 let base = if n % 2 == 0 { self.abs() } else { self };
-                Interval::outward(powf(base.lo, f64::from(n)), powf(base.hi, f64::from(n)), self.partial)
+                Interval::outward(powf(base.lo, f64::from(n)), powf(base.hi, f64::from(n)), self.gaps)
             }
         }
     }
@@ -252,35 +291,27 @@ impl Interval {
         // Between corners the power runs through 1 where the base or the exponent changes sides.
         let (lo, hi) =
             if base.contains(1.0) || y.contains(0.0) { (lo.min(1.0), hi.max(1.0)) } else { (lo, hi) };
-        let wide = Interval::outward(lo, hi, self.partial || y.partial || self.lo < 0.0);
+        let wide = Interval::outward(lo, hi, self.gaps | y.gaps | Gaps::undefined(self.lo < 0.0));
         Interval { lo: wide.lo.max(0.0), ..wide }
     }
 
-    /// ⌊x⌋; partial where it jumps.
+    /// ⌊x⌋; gaps where it jumps.
     #[must_use]
     pub fn floor(self) -> Interval {
         let (lo, hi) = (self.lo.floor(), self.hi.floor());
-        Interval { lo, hi, partial: self.partial || lo != hi }
+        Interval { lo, hi, gaps: self.gaps | Gaps::jumping(lo != hi) }
     }
 
     /// The lesser.
     #[must_use]
     pub fn min(self, other: Interval) -> Interval {
-        Interval {
-            lo: self.lo.min(other.lo),
-            hi: self.hi.min(other.hi),
-            partial: self.partial || other.partial,
-        }
+        Interval { lo: self.lo.min(other.lo), hi: self.hi.min(other.hi), gaps: self.gaps | other.gaps }
     }
 
     /// The greater.
     #[must_use]
     pub fn max(self, other: Interval) -> Interval {
-        Interval {
-            lo: self.lo.max(other.lo),
-            hi: self.hi.max(other.hi),
-            partial: self.partial || other.partial,
-        }
+        Interval { lo: self.lo.max(other.lo), hi: self.hi.max(other.hi), gaps: self.gaps | other.gaps }
     }
 }
 
@@ -288,7 +319,7 @@ impl Neg for Interval {
     type Output = Interval;
 
     fn neg(self) -> Interval {
-        Interval { lo: -self.hi, hi: -self.lo, partial: self.partial }
+        Interval { lo: -self.hi, hi: -self.lo, gaps: self.gaps }
     }
 }
 
@@ -299,7 +330,7 @@ impl Add for Interval {
         if let Some(exact) = self.exactly(b, exact_sum) {
             return exact;
         }
-        Interval { lo: down(self.lo + b.lo), hi: up(self.hi + b.hi), partial: self.partial || b.partial }
+        Interval { lo: down(self.lo + b.lo), hi: up(self.hi + b.hi), gaps: self.gaps | b.gaps }
     }
 }
 
@@ -310,7 +341,7 @@ impl Sub for Interval {
         if let Some(exact) = self.exactly(-b, exact_sum) {
             return exact;
         }
-        Interval { lo: down(self.lo - b.hi), hi: up(self.hi - b.lo), partial: self.partial || b.partial }
+        Interval { lo: down(self.lo - b.hi), hi: up(self.hi - b.lo), gaps: self.gaps | b.gaps }
     }
 }
 
@@ -323,7 +354,7 @@ impl Mul for Interval {
     type Output = Interval;
 
     fn mul(self, b: Interval) -> Interval {
-        let partial = self.partial || b.partial;
+        let gaps = self.gaps | b.gaps;
         if self.is_empty() || b.is_empty() {
             return Interval::EMPTY;
         }
@@ -333,7 +364,7 @@ impl Mul for Interval {
         let p = [times(self.lo, b.lo), times(self.lo, b.hi), times(self.hi, b.lo), times(self.hi, b.hi)];
         let lo = p[0].min(p[1]).min(p[2].min(p[3]));
         let hi = p[0].max(p[1]).max(p[2].max(p[3]));
-        Interval { lo: down(lo), hi: up(hi), partial }
+        Interval { lo: down(lo), hi: up(hi), gaps }
     }
 }
 
@@ -341,17 +372,17 @@ impl Div for Interval {
     type Output = Interval;
 
     fn div(self, b: Interval) -> Interval {
-        let partial = self.partial || b.partial;
+        let gaps = self.gaps | b.gaps;
         if self.is_empty() || b.is_empty() {
             return Interval::EMPTY;
         }
         if b.contains(0.0) {
-            return Interval { partial: true, ..Interval::WHOLE };
+            return Interval { gaps: Gaps::UNDEFINED, ..Interval::WHOLE };
         }
         let q = [self.lo / b.lo, self.lo / b.hi, self.hi / b.lo, self.hi / b.hi];
         let lo = q[0].min(q[1]).min(q[2].min(q[3]));
         let hi = q[0].max(q[1]).max(q[2].max(q[3]));
-        Interval { lo: down(lo), hi: up(hi), partial }
+        Interval { lo: down(lo), hi: up(hi), gaps }
     }
 }
 
@@ -418,7 +449,7 @@ mod tests {
         let most = Interval::point((1u64 << 53) as f64);
         assert!((most + Interval::point(1.0)).contains(most.lo + 1.0) && (most * two).width() > 0.0);
         assert!((Interval::point(f64::MAX) + Interval::point(f64::MAX)).lo < f64::INFINITY);
-        assert!((five.with_partial(true) + two).partial);
+        assert!((five.with_gaps(Gaps::JUMPS) + two).gaps.are_there());
     }
 
     #[test]
@@ -431,12 +462,12 @@ mod tests {
 
     #[test]
     fn undefined_parts_are_said() {
-        assert!(Interval::new(-1.0, 4.0).sqrt().partial);
+        assert!(Interval::new(-1.0, 4.0).sqrt().gaps.are_undefined());
         assert_eq!(Interval::new(-1.0, 4.0).sqrt().lo, 0.0);
         assert!(Interval::new(-2.0, -1.0).sqrt().is_empty());
-        assert!((Interval::point(1.0) / Interval::new(-1.0, 1.0)).partial);
-        assert!(Interval::new(0.5, 1.5).floor().partial);
-        assert!(!Interval::new(1.25, 1.5).floor().partial);
+        assert!((Interval::point(1.0) / Interval::new(-1.0, 1.0)).gaps.are_undefined());
+        assert_eq!(Interval::new(0.5, 1.5).floor().gaps, Gaps::JUMPS);
+        assert_eq!(Interval::new(1.25, 1.5).floor().gaps, Gaps::NONE);
     }
 
     #[test]

@@ -183,10 +183,11 @@ impl<F: Bounded> Iterator for Zeros<'_, F> {
             }
             self.evaluations += 1;
             let (value, slope) = self.f.bounds(piece);
-            if !value.contains(0.0) && !value.partial {
+            if !value.contains(0.0) && !value.gaps.are_there() {
                 continue;
             }
-            if !slope.contains(0.0) && !slope.is_empty() && !slope.partial && !value.partial {
+            if !slope.contains(0.0) && !slope.is_empty() && !slope.gaps.are_there() && !value.gaps.are_there()
+            {
                 if let Some(zero) = self.monotone(piece, slope.lo > 0.0) {
                     // The cluster before it comes first.
                     if let Some(ended) = self.settle() {

@@ -2,16 +2,16 @@
 //!
 //! Values and derivatives are carried forward side by side (Moore, Kearfott & Cloud, *Introduction to Interval Analysis*, ch. 6).
 //! Where a jump of the tape is not decided by the intervals both ways are run and joined, and the result says that it may jump
-//! ([`Interval::partial`]); so does whatever may be undefined.
+//! ([`Interval::gaps`]); so does whatever may be undefined.
 
 use super::rules;
 use super::{Binary, FaultKind, Field, Op, Register, Unary};
-use crate::math::interval::Interval;
+use crate::math::interval::{Gaps, Interval};
 
 /// All values of something, and all of its derivatives along N directions.
 #[derive(Clone, Copy, Debug)]
 pub struct Enclosed<const N: usize> {
-    /// Every value. `partial` where it may jump or be undefined; then the derivatives are those of the parts.
+    /// Every value. `gaps` where it may jump or be undefined; then the derivatives are those of the parts.
     pub value: Interval,
     /// Every derivative.
     pub slope: [Interval; N],
@@ -27,8 +27,8 @@ impl<const N: usize> Enclosed<N> {
 
     /// Any value with any jump.
     pub const ANYTHING: Self = Enclosed {
-        value: Interval { partial: true, ..Interval::WHOLE },
-        slope: [Interval { partial: true, ..Interval::WHOLE }; N],
+        value: Interval { gaps: Gaps::ANY, ..Interval::WHOLE },
+        slope: [Interval { gaps: Gaps::ANY, ..Interval::WHOLE }; N],
     };
 
     /// No value.
@@ -36,8 +36,12 @@ impl<const N: usize> Enclosed<N> {
 
     /// Of one part or the other: all that both can be, with a jump between.
     pub(super) fn either(self, other: Self) -> Self {
-        let value = self.value.hull(other.value).with_partial(true);
+        let value = self.value.hull(other.value).with_gaps(Gaps::JUMPS);
         Enclosed { value, slope: std::array::from_fn(|i| self.slope[i].hull(other.slope[i])) }
+    }
+
+    pub(super) fn with_gaps(self, gaps: Gaps) -> Self {
+        Enclosed { value: self.value.with_gaps(gaps), ..self }
     }
 
     /// A value whose derivative is d times this one's.
@@ -158,7 +162,7 @@ pub(super) fn plus(a: Interval, b: Interval) -> Interval {
 /// 1 / a for an a that is not negative: without bound where it may be 0.
 pub(super) fn over_positive(a: Interval) -> Interval {
     let hi = if a.lo > 0.0 { (1.0 / a.lo).next_up() } else { f64::INFINITY };
-    Interval { lo: (1.0 / a.hi).next_down().max(0.0), hi, partial: a.partial }
+    Interval { lo: (1.0 / a.hi).next_down().max(0.0), hi, gaps: a.gaps }
 }
 
 /// Which of two an operation took all over the box.
@@ -252,12 +256,12 @@ impl<'f, const N: usize> Encloser<'f, N> {
                 Op::JumpIfZero(condition, target) => match self.truth(condition) {
                     Some(true) => None,
                     Some(false) => Some(target),
-                    None => return self.both_ways(at + 1, target as usize),
+                    None => return self.both_ways(condition, at + 1, target as usize),
                 },
                 Op::JumpIfNotZero(condition, target) => match self.truth(condition) {
                     Some(true) => Some(target),
                     Some(false) => None,
-                    None => return self.both_ways(at + 1, target as usize),
+                    None => return self.both_ways(condition, at + 1, target as usize),
                 },
                 Op::Fault(_) => return Enclosed::NOTHING,
                 _ => {
@@ -293,15 +297,21 @@ impl<'f, const N: usize> Encloser<'f, N> {
         }
     }
 
-    fn both_ways(&mut self, one: usize, other: usize) -> Enclosed<N> {
+    fn both_ways(&mut self, condition: Register, one: usize, other: usize) -> Enclosed<N> {
         self.undecided += 1;
         if self.undecided > self.most_undecided {
             return Enclosed::ANYTHING;
         }
+        let gaps = self.gaps(condition);
         let kept = self.registers.clone();
         let first = self.run_from(one);
         self.registers = kept;
-        first.either(self.run_from(other))
+        first.either(self.run_from(other)).with_gaps(gaps)
+    }
+
+    /// Those of what decides.
+    fn gaps(&self, condition: Register) -> Gaps {
+        self.get(condition).value.gaps
     }
 
     fn get(&self, register: Register) -> Enclosed<N> {
@@ -317,7 +327,7 @@ impl<'f, const N: usize> Encloser<'f, N> {
                 let chosen = match self.truth(condition) {
                     Some(true) => self.get(a),
                     Some(false) => self.get(b),
-                    None => self.get(a).either(self.get(b)),
+                    None => self.get(a).either(self.get(b)).with_gaps(self.gaps(condition)),
                 };
                 (to, chosen)
             }
@@ -379,7 +389,7 @@ impl<'f, const N: usize> Encloser<'f, N> {
             Unary::Not => match (a.value.contains(0.0), is_zero(a.value)) {
                 (false, _) => Enclosed::constant(0.0),
                 (true, true) => Enclosed::constant(1.0),
-                (true, false) => undecided(),
+                (true, false) => undecided(a.value.gaps),
             },
         }
     }
@@ -389,7 +399,7 @@ impl<'f, const N: usize> Encloser<'f, N> {
         let decide = |yes: bool, no: bool| match (yes, no) {
             (true, _) => Enclosed::constant(1.0),
             (_, true) => Enclosed::constant(0.0),
-            (false, false) => undecided(),
+            (false, false) => undecided(a.value.gaps | b.value.gaps),
         };
         let apart = a.value.hi < b.value.lo || b.value.hi < a.value.lo;
         let same = a.value.lo == a.value.hi && a.value == b.value;
@@ -413,8 +423,8 @@ impl<'f, const N: usize> Encloser<'f, N> {
 }
 
 /// 0 here, 1 there.
-fn undecided<const N: usize>() -> Enclosed<N> {
-    Enclosed::flat(Interval { lo: 0.0, hi: 1.0, partial: true })
+fn undecided<const N: usize>(gaps: Gaps) -> Enclosed<N> {
+    Enclosed::flat(Interval { lo: 0.0, hi: 1.0, gaps: gaps | Gaps::JUMPS })
 }
 
 /// The element that an index means, or all that it can mean.

@@ -244,7 +244,7 @@ impl<const N: usize> Linear<N> {
         .rounded(0.0, [0.0; N])
     }
 
-    /// A function of several forms with a value at their middles within `value`, and values within `all` and partial derivatives within `slopes` over
+    /// A function of several forms with a value at their middles within `value`, and values within `all` and gaps derivatives within `slopes` over
     /// their ranges. None where these are not known.
     pub(super) fn by_derivatives(
         of: &[Self],
@@ -252,8 +252,9 @@ impl<const N: usize> Linear<N> {
         all: Interval,
         slopes: &[Interval],
     ) -> Option<Self> {
-        let is_known =
-            |x: &Interval| !x.partial && x.lo <= x.hi && x.lo > f64::NEG_INFINITY && x.hi < f64::INFINITY;
+        let is_known = |x: &Interval| {
+            !x.gaps.are_there() && x.lo <= x.hi && x.lo > f64::NEG_INFINITY && x.hi < f64::INFINITY
+        };
         if !(is_known(&value) && is_known(&all) && slopes.iter().all(is_known)) {
             return None;
         }

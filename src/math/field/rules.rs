@@ -3,7 +3,7 @@
 use super::enclose::{Enclosed, over_positive, plus, times};
 use super::{Call1, Call2, CallN, MAX_CALL, Rule};
 use crate::math::elementary::{acos, asin, atan, atan2, cbrt, cosh, log2, log10, sinh, tanh};
-use crate::math::interval::Interval;
+use crate::math::interval::{Gaps, Interval};
 use crate::math::noise;
 use std::f64::consts::{FRAC_PI_2, LN_2, LN_10, PI};
 
@@ -44,11 +44,11 @@ pub(super) fn call1<const N: usize>(f: Call1, rule: Rule, a: &Enclosed<N>) -> En
         }
         Rule::Sign | Rule::Round => {
             let (lo, hi) = (f(x.lo), f(x.hi));
-            Enclosed::flat(Interval { lo, hi, partial: x.partial || lo != hi })
+            Enclosed::flat(Interval { lo, hi, gaps: x.gaps | Gaps::jumping(lo != hi) })
         }
         Rule::Radians | Rule::Degrees => {
             let factor = Interval::point(f(1.0));
-            let factor = Interval { lo: factor.lo.next_down(), hi: factor.hi.next_up(), partial: false };
+            let factor = Interval { lo: factor.lo.next_down(), hi: factor.hi.next_up(), gaps: Gaps::NONE };
             a.chain(x.monotone(f), factor)
         }
         _ => opaque(&[*a], |at| f(at[0])),
@@ -88,7 +88,7 @@ pub(super) fn call_n<const N: usize>(f: CallN, rule: Rule, from: &[Enclosed<N>],
         Rule::Clamp => {
             let clamped = from[0].max(&from[1]).0.min(&from[2]).0;
             let crossed = from[1].value.hi > from[2].value.lo;
-            to[0] = Enclosed { value: clamped.value.with_partial(crossed), ..clamped };
+            to[0] = Enclosed { value: clamped.value.with_gaps(Gaps::undefined(crossed)), ..clamped };
         }
         Rule::Smoothstep => to[0] = smoothstep(&from[0], &from[1], &from[2]),
         Rule::Noise => to[0] = noise_of(from, noise_slopes(&values_of(from)[..from.len()]), noise::noise),
@@ -134,9 +134,13 @@ fn opaque<const N: usize>(a: &[Enclosed<N>], f: impl Fn(&[f64]) -> f64) -> Enclo
     }
 }
 
-/// The part above 0, said to be partial where there is another.
+/// The part above 0, said to be gaps where there is another.
 fn above_zero(x: Interval) -> Option<Interval> {
-    (x.hi > 0.0).then(|| Interval { lo: x.lo.max(0.0), hi: x.hi, partial: x.partial || x.lo <= 0.0 })
+    (x.hi > 0.0).then(|| Interval {
+        lo: x.lo.max(0.0),
+        hi: x.hi,
+        gaps: x.gaps | Gaps::undefined(x.lo <= 0.0),
+    })
 }
 
 fn logarithm<const N: usize>(a: &Enclosed<N>, of_base: f64, value: Interval) -> Enclosed<N> {
@@ -145,7 +149,7 @@ fn logarithm<const N: usize>(a: &Enclosed<N>, of_base: f64, value: Interval) -> 
 }
 
 fn arc<const N: usize>(rule: Rule, a: &Enclosed<N>) -> Enclosed<N> {
-    let x = a.value.intersect(UNIT).with_partial(a.value.lo < -1.0 || a.value.hi > 1.0);
+    let x = a.value.intersect(UNIT).with_gaps(Gaps::undefined(a.value.lo < -1.0 || a.value.hi > 1.0));
     if x.is_empty() {
         return Enclosed::NOTHING;
     }
@@ -159,7 +163,7 @@ fn arc<const N: usize>(rule: Rule, a: &Enclosed<N>) -> Enclosed<N> {
 /// The arc cosine falls.
 fn falling_arc(x: Interval) -> Interval {
     let (lo, hi) = (acos(x.hi), acos(x.lo));
-    Interval { lo: lo.next_down().next_down().max(0.0), hi: hi.next_up().next_up(), partial: x.partial }
+    Interval { lo: lo.next_down().next_down().max(0.0), hi: hi.next_up().next_up(), gaps: x.gaps }
 }
 
 fn hyperbolic_cosine(x: Interval) -> Interval {
@@ -184,7 +188,7 @@ pub(super) fn power<const N: usize>(a: &Enclosed<N>, b: &Enclosed<N>) -> Enclose
         } else {
             Interval::EMPTY
         });
-        return a.chain(value, slope.with_partial(x.lo < 0.0));
+        return a.chain(value, slope.with_gaps(Gaps::undefined(x.lo < 0.0)));
     }
     // aᵇ (b a′ / a + b′ ln a).
     let (ratio, log) = (y / x, x.ln());
@@ -216,14 +220,14 @@ fn whole_power<const N: usize>(a: &Enclosed<N>, n: i32) -> Enclosed<N> {
 fn angle<const N: usize>(y: &Enclosed<N>, x: &Enclosed<N>) -> Enclosed<N> {
     let (v, u) = (y.value, x.value);
     let turn = Interval::new(-PI.next_up(), PI.next_up());
-    let partial = u.partial || v.partial;
+    let gaps = u.gaps | v.gaps;
     let squares = u.square() + v.square();
     let slope = |i: usize| {
         let across = plus(times(y.slope[i], u), -times(x.slope[i], v));
         times(across, over_positive(squares))
     };
     let value = if u.lo <= 0.0 && v.contains(0.0) {
-        turn.with_partial(true)
+        turn.with_gaps(gaps | Gaps::JUMPS)
     } else {
         let corners = [(v.lo, u.lo), (v.lo, u.hi), (v.hi, u.lo), (v.hi, u.hi)].map(|(y, x)| atan2(y, x));
         let lo = corners.iter().copied().fold(f64::INFINITY, f64::min);
@@ -235,7 +239,7 @@ fn angle<const N: usize>(y: &Enclosed<N>, x: &Enclosed<N>) -> Enclosed<N> {
             false if v.hi < 0.0 => (lo, hi.min(0.0)),
             false => (lo, hi),
         };
-        Interval { lo: lo.next_down().next_down(), hi: hi.next_up().next_up(), partial }.intersect(turn)
+        Interval { lo: lo.next_down().next_down(), hi: hi.next_up().next_up(), gaps }.intersect(turn)
     };
     Enclosed { value, slope: std::array::from_fn(slope) }
 }
@@ -249,7 +253,7 @@ fn floored<const N: usize>(a: &Enclosed<N>, b: &Enclosed<N>) -> Enclosed<N> {
 pub(super) fn remainder<const N: usize>(a: &Enclosed<N>, b: &Enclosed<N>) -> Enclosed<N> {
     let q = a.value / b.value;
     let (lo, hi) = (q.lo.trunc(), q.hi.trunc());
-    repeated(a, b, Interval { lo, hi, partial: q.partial || lo != hi })
+    repeated(a, b, Interval { lo, hi, gaps: q.gaps | Gaps::jumping(lo != hi) })
 }
 
 fn repeated<const N: usize>(a: &Enclosed<N>, b: &Enclosed<N>, times: Interval) -> Enclosed<N> {
@@ -258,13 +262,7 @@ fn repeated<const N: usize>(a: &Enclosed<N>, b: &Enclosed<N>, times: Interval) -
     }
     let whole = a.sub(&b.mul(&Enclosed::flat(times)));
     let size = b.value.abs().hi;
-    whole.within(Interval::new(-size, size)).jumping(times.partial)
-}
-
-impl<const N: usize> Enclosed<N> {
-    fn jumping(self, jumps: bool) -> Self {
-        Enclosed { value: self.value.with_partial(jumps), ..self }
-    }
+    whole.within(Interval::new(-size, size)).with_gaps(times.gaps)
 }
 
 fn cross<const N: usize>(from: &[Enclosed<N>], to: &mut [Enclosed<N>]) {
@@ -292,10 +290,10 @@ fn share(x: Interval, length: Interval) -> Interval {
 
 fn normalize<const N: usize>(from: &[Enclosed<N>], to: &mut [Enclosed<N>]) {
     let length = length(from);
-    let jumps = length.value.lo <= 0.0;
+    let gaps = if length.value.lo <= 0.0 { Gaps::ANY } else { Gaps::NONE };
     for (to, x) in to.iter_mut().zip(from) {
         let whole = x.div(&length);
-        *to = Enclosed { value: share(x.value, length.value).with_partial(jumps), slope: whole.slope };
+        *to = Enclosed { value: share(x.value, length.value).with_gaps(gaps), slope: whole.slope };
     }
 }
 
@@ -310,14 +308,14 @@ fn smoothstep<const N: usize>(edge0: &Enclosed<N>, edge1: &Enclosed<N>, x: &Encl
     let slope = Interval::point(6.0) * v * (ONE - v);
     // Six roundings of numbers up to 1.
     let slack = 8.0 * f64::EPSILON;
-    let value = Interval { lo: rises(v.lo) - slack, hi: rises(v.hi) + slack, partial: t.value.partial };
+    let value = Interval { lo: rises(v.lo) - slack, hi: rises(v.hi) + slack, gaps: t.value.gaps };
     t.chain(value.intersect(Interval::new(0.0, 1.0)), slope.max(Interval::new(0.0, 0.0)))
 }
 
 /// What rounding may add to noise: of the offsets in a cell, of eight corners' sums.
 pub(super) const NOISE_ROUNDING: f64 = 64.0 * f64::EPSILON;
 
-/// A noise in 0 … 1 with these partial derivatives.
+/// A noise in 0 … 1 with these gaps derivatives.
 fn noise_of<const N: usize>(
     p: &[Enclosed<N>],
     steep: [Interval; 3],
@@ -331,17 +329,17 @@ fn noise_of<const N: usize>(
     }
     let doubt = NOISE_ROUNDING;
     let at = noise(&middle[..p.len()]);
-    let partial = p.iter().any(|x| x.value.partial);
+    let gaps = p.iter().fold(Gaps::NONE, |gaps, x| gaps | x.value.gaps);
     let around =
-        Interval { lo: (at + away.lo - doubt).next_down(), hi: (at + away.hi + doubt).next_up(), partial };
+        Interval { lo: (at + away.lo - doubt).next_down(), hi: (at + away.hi + doubt).next_up(), gaps };
     let slope = |i: usize| {
         p.iter().zip(&steep).fold(Interval::new(0.0, 0.0), |sum, (x, d)| plus(sum, times(x.slope[i], *d)))
     };
-    let value = if around.lo.is_nan() { Interval { partial, ..Interval::WHOLE } } else { around };
+    let value = if around.lo.is_nan() { Interval { gaps, ..Interval::WHOLE } } else { around };
     Enclosed { value: value.intersect(Interval::new(0.0, 1.0)), slope: std::array::from_fn(slope) }
 }
 
-/// The partial derivatives of noise in 0 … 1 over a box.
+/// The gaps derivatives of noise in 0 … 1 over a box.
 pub(super) fn noise_slopes(p: &[Interval]) -> [Interval; 3] {
     octaves_slopes(p, std::iter::once((0.5, 1.0)))
 }
@@ -363,7 +361,7 @@ pub(super) fn fbm_slopes(p: &[Interval], [octaves, lacunarity, gain]: [f64; 3]) 
 /// Rounding of weights and of their sum: of at most some hundred numbers.
 const SUMS: f64 = 512.0 * f64::EPSILON;
 
-/// The partial derivatives of a sum of octaves of gradient noise, each with its weight and frequency, over a box.
+/// The gaps derivatives of a sum of octaves of gradient noise, each with its weight and frequency, over a box.
 fn octaves_slopes(p: &[Interval], octaves: impl Iterator<Item = (f64, f64)>) -> [Interval; 3] {
     let mut sum = [Interval::new(0.0, 0.0); 3];
     for ((weight, frequency), seed) in octaves.zip(0..) {

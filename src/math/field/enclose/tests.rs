@@ -148,14 +148,14 @@ fn values_and_slopes_lie_in_what_is_said() {
                 field.eval(p, &mut out).map(|()| out[0]).ok()
             };
             let Some(here) = value(&p) else {
-                assert!(all.value.partial, "{name}: undefined at {p:?}");
+                assert!(all.value.gaps.are_undefined(), "{name}: undefined at {p:?}");
                 continue;
             };
             assert!(all.value.contains(here), "{name}: {here} at {p:?} is not in {all:?}");
             let h = 1e-7;
             let q: Vec<f64> = p.iter().zip(&along).map(|(x, d)| x + h * d).collect();
             let inside = q.iter().zip(&low).all(|(q, x)| *x <= *q && *q <= x + size);
-            if let (true, false, Some(there)) = (inside, all.value.partial, value(&q)) {
+            if let (true, false, Some(there)) = (inside, all.value.gaps.are_there(), value(&q)) {
                 let slope = (there - here) / h;
                 let doubt = 1e-6 * (1.0 + slope.abs() + here.abs()) * 30.0;
                 let range = all.slope[0];
@@ -198,11 +198,11 @@ fn jumps_are_followed_both_ways_where_they_are_not_decided() {
         Encloser::new(&field).run(&[input(x, 1.0), input(y, 0.0)])
     };
     let decided = of((2.0, 3.0), (0.0, 1.0));
-    assert!(!decided.value.partial && decided.value.lo == 2.0 && decided.slope[0].lo == 1.0);
+    assert!(!decided.value.gaps.are_there() && decided.value.lo == 2.0 && decided.slope[0].lo == 1.0);
     let other = of((-3.0, -2.0), (0.0, 1.0));
     assert!(other.value.hi >= 1.0 && other.value.hi < 1.1 && other.slope[0].hi == 0.0);
     let open = of((0.0, 3.0), (1.0, 2.0));
-    assert!(open.value.partial && open.value.contains(4.0) && open.value.contains(1.5));
+    assert!(open.value.gaps == Gaps::JUMPS && open.value.contains(4.0) && open.value.contains(1.5));
 }
 
 /// x after so many turns of a loop, or without end where x is less than y.

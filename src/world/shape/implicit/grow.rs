@@ -213,15 +213,19 @@ impl Growing {
         let choices = choices.to_vec();
         self.turns += encloser.turns() as usize;
         let unclear = |tape| Verdict::Unclear { tape, plane: None, halve: true };
-        if all.value.partial {
+        if all.value.gaps.are_undefined() {
             return unclear(trial.tape);
         }
-        let values = match all.value.contains(0.0) {
+        let jumps = all.value.gaps.are_there();
+        let values = match all.value.contains(0.0) && !jumps {
             true => all.value.intersect(mean_value(field, box_of, &all)),
             false => all.value,
         };
         if !values.contains(0.0) {
             return Verdict::Empty(values.hi < 0.0);
+        }
+        if jumps {
+            return unclear(trial.tape);
         }
         unclear(self.shorter_tape(trial.tape, choices))
     }

@@ -360,6 +360,26 @@ fn where_the_function_is_undefined_is_met_as_such() {
 }
 
 #[test]
+fn a_jump_between_values_of_one_sign_is_empty_space() {
+    // The part of x beyond a whole number, which jumps from 1 to 0, and what keeps it from 0.
+    let away_from_zero = |offset: f64| {
+        implicit(4.0, |m, p| {
+            let whole = m.0.unary(Unary::Floor, p[0]);
+            let part = m.sub(p[0], whole);
+            m.plus(part, offset)
+        })
+    };
+    let ahead = ray(DVec3::new(-5.0, 0.1, 0.2), DVec3::X);
+    let outside = away_from_zero(0.5);
+    assert_eq!(outside.cells.middles(outside.bounds()).count(), 0);
+    assert!(outside.meet(&ahead, f64::MAX).is_none());
+    // It jumps through 0 at each of nine whole numbers, comes back between them, and is cut off by the last.
+    let wall = away_from_zero(-0.25);
+    assert!(wall.cells.middles(wall.bounds()).count() > 0);
+    assert_eq!(distances(&wall, &ahead).len(), 9 + 8 + 1);
+}
+
+#[test]
 fn the_turns_of_a_loop_hide_no_surface() {
     for n in [40.0, 1000.0] {
         let ball = implicit(2.0, |m, p| {

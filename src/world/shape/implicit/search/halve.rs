@@ -5,7 +5,7 @@ use super::super::plane::{Along, Part, Zeros};
 use super::super::{UNDEFINED, UNRESOLVED, directions};
 use super::{Found, MOST_EVALUATIONS, Search};
 use crate::math::field::{Enclosed, Encloser, Linear, Linearizer};
-use crate::math::interval::Interval;
+use crate::math::interval::{Gaps, Interval};
 
 /// Pieces are not split below this many steps of the floating-point grid.
 const LEAST_STEPS: f64 = 4.0;
@@ -121,10 +121,11 @@ impl<'s> Search<'s> {
             }
             return;
         }
-        if !value.partial && !value.contains(0.0) {
+        // Where it jumps, it does so on one side of 0.
+        if !value.gaps.are_undefined() && !value.contains(0.0) {
             return self.arrive(a, value.hi < 0.0, found);
         }
-        let is_steady = !value.partial && !slope.partial && !slope.contains(0.0);
+        let is_steady = !value.gaps.are_there() && !slope.gaps.are_there() && !slope.contains(0.0);
         if is_steady {
             let part = Part { from: a, to: b, before: None, after: None };
             return self.monotone_between(&part, found);
@@ -133,13 +134,14 @@ impl<'s> Search<'s> {
         let scale = self.scale(a).max(self.scale(b));
         let is_least = b - a <= LEAST_STEPS * f64::EPSILON * scale || !(a < middle && middle < b);
         if is_least {
-            return self.hide(a, b, value.partial, found);
+            return self.hide(a, b, value.gaps.are_there(), found);
         }
         let here = self.bounds_at(middle, at);
-        if !value.partial && b - a <= SMALL * scale && value.width() <= 4.0 * here.width() {
+        if !value.gaps.are_there() && b - a <= SMALL * scale && value.width() <= 4.0 * here.width() {
             return self.hide(a, b, false, found);
         }
-        let (left, right) = if value.partial { (middle, middle) } else { gap(a, b, middle, here, slope) };
+        let (left, right) =
+            if value.gaps.are_there() { (middle, middle) } else { gap(a, b, middle, here, slope) };
         if right < b {
             pieces.push((right, b));
         }
@@ -161,7 +163,7 @@ impl<'s> Search<'s> {
             Interval {
                 lo: along.lo.max(within.min[axis]),
                 hi: along.hi.min(within.max[axis]),
-                partial: false,
+                gaps: Gaps::NONE,
             }
         };
         let at = [0, 1, 2].map(|axis| {
