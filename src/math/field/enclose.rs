@@ -227,14 +227,19 @@ impl<'f, const N: usize> Encloser<'f, N> {
         self.run_from(0)
     }
 
-    /// The same, and the choice of each step; those of a tape with jumps are not known.
-    pub fn run_choosing(&mut self, inputs: &[Enclosed<N>]) -> (Enclosed<N>, &[Choice]) {
+    /// The same, noting the choice of each step.
+    pub fn run_choosing(&mut self, inputs: &[Enclosed<N>]) -> Enclosed<N> {
         self.choices.clear();
         self.choices.resize(self.field.ops.len(), Choice::Both);
         self.records = true;
         let result = self.run(inputs);
         self.records = false;
-        (result, &self.choices)
+        result
+    }
+
+    /// The choices that [`Encloser::run_choosing`] noted; those of a tape with jumps are not known.
+    pub fn choices(&self) -> &[Choice] {
+        &self.choices
     }
 
     /// How many turns the loops of the last run took.

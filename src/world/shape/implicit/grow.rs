@@ -209,8 +209,7 @@ impl Growing {
         let box_of = std::array::from_fn(|i| Interval::new(min[i].next_down(), max[i].next_up()));
         let field = &self.cells.tapes[trial.tape as usize];
         let mut encloser = Encloser::new(field);
-        let (all, choices) = encloser.run_choosing(&directions(box_of, [DVec3::X, DVec3::Y, DVec3::Z]));
-        let choices = choices.to_vec();
+        let all = encloser.run_choosing(&directions(box_of, [DVec3::X, DVec3::Y, DVec3::Z]));
         self.turns += encloser.turns() as usize;
         let unclear = |tape| Verdict::Unclear { tape, plane: None, halve: true };
         if all.value.gaps.are_undefined() {
@@ -227,6 +226,7 @@ impl Growing {
         if jumps {
             return unclear(trial.tape);
         }
+        let choices = encloser.choices().to_vec();
         unclear(self.shorter_tape(trial.tape, choices))
     }
 

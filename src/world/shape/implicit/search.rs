@@ -115,7 +115,7 @@ struct Hidden {
     from: f64,
     to: f64,
     /// True where f may jump or be undefined.
-    partial: bool,
+    gaps: bool,
 }
 
 struct Search<'s> {
@@ -374,15 +374,15 @@ impl<'s> Search<'s> {
     }
 
     /// Adds a piece to what is hidden.
-    fn hide(&mut self, a: f64, b: f64, partial: bool, found: Found<'_>) {
+    fn hide(&mut self, a: f64, b: f64, gaps: bool, found: Found<'_>) {
         match &mut self.hidden {
             Some(hidden) if a - hidden.to <= 16.0 * (hidden.to - hidden.from + b - a) => {
                 hidden.to = b;
-                hidden.partial |= partial;
+                hidden.gaps |= gaps;
             }
             _ => {
                 self.settle(found);
-                self.hidden = Some(Hidden { from: a, to: b, partial });
+                self.hidden = Some(Hidden { from: a, to: b, gaps });
             }
         }
     }
@@ -399,7 +399,7 @@ impl<'s> Search<'s> {
             let crosses = (start < 0.0) != (end < 0.0);
             let root = if crosses { self.bracketed((hidden.from, start), (hidden.to, end)) } else { middle };
             self.come(root, end < 0.0, found);
-        } else if !hidden.partial {
+        } else if !hidden.gaps {
             self.tell(middle, ON_SURFACE, found);
             if !self.stopped {
                 self.tell(middle, ON_SURFACE, found);
